@@ -126,7 +126,7 @@ class DrawListBuilder {
               : kNone;
       const bool skinned = primitive.first_skin != kNone && deformed != kNone;
       Mat4 m = world_from_appearance(scene_, state_.world_from_object[a.object],
-                                     state_.poses[a.object], a, skinned);
+                                     state_.poses[a.object], a, skinned, state_.flock[a.object]);
       m[3] -= Vec4(origin_, 0.0);
       const Vec3 center = Vec3(m * Vec4(primitive.center_m, 1.0));
       const double center_m = glm::length(center), stretch = largest_scale(m);
@@ -193,9 +193,9 @@ class DrawListBuilder {
     instance.deformed = seen.deformed;
     out_.instances.push_back(instance);
     if (!state_.motion) return;
-    Mat4 next = world_from_appearance(scene_, state_.next_world_from_object[a.object],
-                                      state_.next_poses[a.object], a,
-                                      primitive.first_skin != kNone && seen.deformed != kNone);
+    Mat4 next = world_from_appearance(
+        scene_, state_.next_world_from_object[a.object], state_.next_poses[a.object], a,
+        primitive.first_skin != kNone && seen.deformed != kNone, state_.next_flock[a.object]);
     next[3] -= Vec4(origin_, 0.0);
     shared::NextInstance next_instance{};
     set_rows(next_instance, next);

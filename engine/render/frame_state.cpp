@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "engine/scene/flock_motion.hpp"
 #include "engine/scene/model_lights.hpp"
 
 namespace neritic::render {
@@ -94,6 +95,10 @@ FrameState evaluate_frame(const scene::MotionSource& source, const GpuScene& gpu
     const scene::Model& model = index >= 0 ? *scene.models[static_cast<std::size_t>(index)] : empty;
     state.poses.push_back(source.model_pose(i, model, time_s));
     if (motion) state.next_poses.push_back(source.model_pose(i, model, next_time_s));
+    const bool flock = scene.objects[i].flock.has_value();
+    state.flock.push_back(flock ? scene::flock_copies(source, i, time_s) : std::vector<Mat4>());
+    state.next_flock.push_back(flock && motion ? scene::flock_copies(source, i, next_time_s)
+                                               : state.flock.back());
   }
   for (const scene::Lamp& lamp : scene.lamps)
     state.world_from_lamp.push_back(source.world_from(lamp.mount, time_s));
@@ -151,10 +156,12 @@ FrameState evaluate_frame(const scene::MotionSource& source, const GpuScene& gpu
 }
 
 Mat4 world_from_appearance(const scene::Scene& scene, const Pose& world_from_object,
-                           const scene::ModelPose& pose, const Appearance& a, bool skinned) {
+                           const scene::ModelPose& pose, const Appearance& a, bool skinned,
+                           const std::vector<Mat4>& flock) {
   const scene::Object& object = scene.objects[a.object];
   Mat4 m = to_matrix(world_from_object);
-  if (a.copy >= 0) m = m * object.copies[static_cast<std::size_t>(a.copy)];
+  if (a.copy >= 0)
+    m = m * (flock.empty() ? object.copies : flock)[static_cast<std::size_t>(a.copy)];
   m = glm::scale(m, object.scale);
   if (!skinned) {
     m = m * pose.model_from_node[a.node];

@@ -30,10 +30,12 @@ struct FrameState {
   bool motion = false;
   std::vector<Pose> world_from_object, next_world_from_object;  // an object
   std::vector<scene::ModelPose> poses, next_poses;              // an object
-  std::vector<PlacedLight> lights;                              // of models
-  std::vector<Pose> world_from_lamp;                            // of the scene's
-  std::vector<Mat4f> joints;                                    // of all jobs: now, then next
-  std::vector<float> weights;                                   // likewise
+  // Object_from_copy of the objects that are schools; empty lists of others.
+  std::vector<std::vector<Mat4>> flock, next_flock;
+  std::vector<PlacedLight> lights;    // of models
+  std::vector<Pose> world_from_lamp;  // of the scene's
+  std::vector<Mat4f> joints;          // of all jobs: now, then next
+  std::vector<float> weights;         // likewise
   std::vector<DeformJob> deforms;
   std::uint32_t deformed_vertices = 0;
 
@@ -50,9 +52,9 @@ FrameState evaluate_frame(const scene::MotionSource& motion, const GpuScene& gpu
                           std::span<const std::uint32_t> worn = {});
 
 // World_from_primitive of an appearance: object, copy, node (unless skinned: joints hold it),
-// instance.
+// instance. flock: the object's copies where they swim; empty: the scene's.
 Mat4 world_from_appearance(const scene::Scene& scene, const Pose& world_from_object,
-                           const scene::ModelPose& pose, const Appearance& appearance,
-                           bool skinned);
+                           const scene::ModelPose& pose, const Appearance& appearance, bool skinned,
+                           const std::vector<Mat4>& flock = {});
 
 }  // namespace neritic::render

@@ -20,6 +20,7 @@
 #include "engine/render/draw_list.hpp"
 #include "engine/render/shadow_maps.hpp"
 #include "engine/render/water_passes.hpp"
+#include "shared/camera.h"
 #include "shared/lighting.h"
 #include "shared/waves.h"
 
@@ -168,6 +169,13 @@ class Renderer {
   Result<graph::ImageHandle> declare_resize(graph::FrameGraph& graph, const std::string& prefix,
                                             graph::ImageHandle color, std::uint32_t width,
                                             std::uint32_t height, std::uint32_t layers);
+  // What a lens and an image sensor make of the picture, for as many pixels as the camera has.
+  // terms: kCamera... bits.
+  Result<graph::ImageHandle> declare_camera(graph::FrameGraph& graph, const std::string& prefix,
+                                            graph::ImageHandle hdr,
+                                            const shared::CameraParams& params, std::uint32_t terms,
+                                            std::uint32_t width, std::uint32_t height,
+                                            std::uint32_t layers);
   // Display picture, kColorFormat: tonemap and, where asked for, antialias, which smooths edges.
   Result<graph::ImageHandle> declare_picture(graph::FrameGraph& graph, const std::string& prefix,
                                              graph::ImageHandle hdr, std::uint32_t width,
@@ -238,7 +246,8 @@ class Renderer {
   std::map<std::array<std::uint32_t, 5>, gpu::Pipeline> shade_;
   std::map<VisibilityKnobs, gpu::Pipeline> visibility_;
   gpu::Pipeline visibility_blur_, caustics_, caustics_resolve_;
-  gpu::Sampler tile_sampler_;  // linear, repeating
+  std::map<std::uint32_t, gpu::Pipeline> camera_;            // by terms
+  gpu::Sampler tile_sampler_;                                // linear, repeating
   std::map<std::uint32_t, gpu::Pipeline> hidden_pipelines_;  // by view mask
   gpu::Pipeline deform_, tonemap_, tonemap_luma_, antialias_, resize_;
   // Bound where a shader declares a buffer that this frame does not use: one to read, one to write,

@@ -90,7 +90,7 @@ std::vector<ShadowMap> shadow_maps(const scene::Scene& scene, const GpuScene& gp
 std::vector<std::uint8_t> moving_objects(const scene::Scene& scene) {
   std::vector<std::uint8_t> out;
   for (const scene::Object& object : scene.objects) {
-    bool moves = object.clip >= 0;
+    bool moves = object.clip >= 0 || object.flock;
     if (object.model >= 0) {
       const scene::Model& model = *scene.models[static_cast<std::size_t>(object.model)];
       for (const scene::Node& node : model.nodes) moves |= node.skin >= 0;

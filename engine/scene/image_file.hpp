@@ -1,6 +1,6 @@
-// Picture and map files: read PNG (8 and 16 bit), JPEG, WebP and OpenEXR; write PNG. Any thread.
-// Errors are kBadInput with the path and what is accepted; sizes are limited to 32768 x 32768 and
-// 2^28 pixels, so a forged header cannot exhaust the memory.
+// Picture and map files: read PNG (8 and 16 bit), JPEG, WebP and OpenEXR; write PNG and OpenEXR.
+// Any thread. Errors are kBadInput with the path and what is accepted; sizes are limited to 32768 x
+// 32768 and 2^28 pixels, so a forged header cannot exhaust the memory.
 #pragma once
 
 #include <cstddef>
@@ -48,6 +48,8 @@ struct ExrImage {
 Result<ExrImage> read_exr(const std::filesystem::path& path);
 Result<ExrImage> decode_exr(std::span<const std::byte> bytes, const std::string& name);
 
+// Three channels, as half floats.
+Status write_exr(const std::filesystem::path& path, const ImageF32& image);
 // 1, 3 or 4 channels. Deterministic bytes for the same pixels.
 Status write_png8(const std::filesystem::path& path, const ImageU8& image);
 Status write_png16(const std::filesystem::path& path, const ImageU16& image);

@@ -6,6 +6,7 @@
 
 #include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
+#include "engine/scene/flock_motion.hpp"
 #include "engine/scene/model_lights.hpp"
 #include "engine/scene/motion.hpp"
 #include "engine/scene/scene_copies.hpp"
@@ -119,6 +120,23 @@ void choose_sampling(Scene& scene, const std::string& asked) {
                                         : fmt::format("at most {} sonars get \"standard\"", kFew)));
 }
 
+// Names to indices, and the copies at time 0.
+Status resolve_flocks(Scene& scene) {
+  for (Object& object : scene.objects) {
+    if (!object.flock) continue;
+    for (const std::string& name : object.flock->avoid_names) {
+      const auto at = std::ranges::find(scene.objects, name, &Object::name);
+      if (at == scene.objects.end())
+        return refusal(object.flock->place_avoid, fmt::format("\"{}\"", name),
+                       "the name of an object of the scene");
+      object.flock->avoid.push_back(static_cast<std::size_t>(at - scene.objects.begin()));
+    }
+  }
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    if (scene.objects[i].flock) scene.objects[i].copies = flock_copies(MotionSource(scene), i, 0.0);
+  return {};
+}
+
 }  // namespace
 
 Pose Scene::world_from(const Mount& mount, double time_s) const {
@@ -150,6 +168,7 @@ Result<Scene> load_scene(const std::filesystem::path& path, const SceneOptions& 
         draft.scene.notes.push_back(note);
   draft.scene.models = std::move(loaded.models);
   NERITIC_TRY_STATUS(resolve_water_sources(draft.scene));
+  NERITIC_TRY_STATUS(resolve_flocks(draft.scene));
   choose_model_lights(draft.scene);
   choose_sampling(draft.scene, options.sonar_quality);
   return std::move(draft.scene);

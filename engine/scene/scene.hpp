@@ -14,6 +14,8 @@
 
 #include "engine/core/math.hpp"
 #include "engine/core/result.hpp"
+#include "engine/scene/camera_terms.hpp"
+#include "engine/scene/flock.hpp"
 #include "engine/scene/model.hpp"
 #include "engine/scene/modem_settings.hpp"
 #include "engine/scene/physics_settings.hpp"
@@ -62,6 +64,7 @@ struct Object {
   std::vector<InputChoice> inputs;   // the source of its pose; empty: its mount alone
   // Extra copies: object_from_copy. Empty: drawn once at the mount. Each copy has its own label.
   std::vector<Mat4> copies;
+  std::optional<Flock> flock = {};  // moves the copies
   std::size_t instance_count() const { return copies.empty() ? 1 : copies.size(); }
 };
 
@@ -126,6 +129,7 @@ struct Camera {
   bool antialias = false;          // smooth edges of the display picture
   PictureDetail detail;            // how finely that is made
   Exposure exposure;
+  CameraTerms terms;
 };
 
 struct Sonar {

@@ -109,6 +109,8 @@ std::string read_name(TableReader& reader, const std::string& otherwise);
 // scene_read_track.cpp: the key track, where it is there.
 std::optional<TrackDraft> read_track(TableReader& parent);
 Track make_track(const TrackDraft& draft, const Quat& rotation);
+// scene_read_camera.cpp: lens, sensor, white balance; width, height and field of view are read.
+void read_camera_terms(TableReader& reader, Camera& camera);
 // scene_read_sonar.cpp, scene_read_sonar_terms.cpp: a sonar's own keys, and its tables.
 void read_sonar(TableReader& reader, Sonar& sonar);
 void read_sonar_terms(TableReader& reader, SonarTerms& terms);

@@ -83,6 +83,7 @@ inline constexpr auto kObjectKeys = std::to_array<Key>({"name",
                                                         "clip_rate",
                                                         "copies",
                                                         "copies_file",
+                                                        "flock",
                                                         "scatter",
                                                         "collision",
                                                         "dynamics",
@@ -138,6 +139,8 @@ inline constexpr auto kAcousticsKeys =
 inline constexpr auto kSourceKeys = std::to_array<Key>({"device", "diver", "character", "rate_hz"});
 inline constexpr auto kStandBetweenKeys = std::to_array<Key>({"a", "b", "distance_m"});
 
+inline constexpr auto kFlockKeys =
+    std::to_array<Key>({"count", "kind", "radius_m", "speed_m_s", "seed", "avoid", "avoid_m"});
 inline constexpr auto kScatterKeys =
     std::to_array<Key>({"count", "seed", "area_m", "on", "scale", "align", "sink_m", "keep_out_m"});
 
@@ -163,11 +166,18 @@ inline constexpr auto kCameraKeys = std::to_array<Key>({"name",
                                                         "exposure_compensation_ev",
                                                         "quality",
                                                         "max_error",
-                                                        "detail"});
-
+                                                        "detail",
+                                                        "lens",
+                                                        "sensor",
+                                                        "white_balance",
+                                                        "vignette",
+                                                        "linear"});
 inline constexpr auto kDetailKeys = std::to_array<Key>(
     {"resolution", "shadow_size", "cascades", "shadow_samples", "visibility_step",
      "occlusion_samples", "inscatter_samples", "waves", "scatter_levels", "particles"});
+inline constexpr auto kLensKeys = std::to_array<Key>({"model", "k", "p"});
+inline constexpr auto kImageSensorKeys = std::to_array<Key>(
+    {"gain_db", "full_well_e", "read_noise_e", "saturation_ev", "bits", "bayer"});
 
 inline constexpr auto kSonarKeys = std::to_array<Key>(
     {"name",           "include",        "on",           "track",         "position_m",

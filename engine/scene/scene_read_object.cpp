@@ -108,7 +108,7 @@ std::optional<ModelRequest> read_drawing(TableReader& reader) {
   const int drawings = int{model} + int{shape} + int{terrain};
   if (drawings == 0 && is_carrier(reader)) {
     refuse_other_keys(reader, "what is not drawn", {});
-    for (const Key key : {"scale", "clip", "copies", "copies_file", "scatter", "material",
+    for (const Key key : {"scale", "clip", "copies", "copies_file", "scatter", "flock", "material",
                           "backscatter_db", "reflectivity"})
       if (reader.has(key)) reader.refuse(key, "no such key for what is not drawn");
     return std::nullopt;
@@ -217,6 +217,46 @@ std::optional<ScatterDraft> read_scatter(TableReader& parent, std::uint64_t scen
   return scatter;
 }
 
+// The names of the objects that fish avoid: one, or a list.
+std::vector<std::string> read_avoid(TableReader& reader) {
+  const TomlValue* value = reader.find("avoid");
+  if (!value) return {};
+  std::vector<std::string> names;
+  const auto add = [&](const TomlValue& item) {
+    if (item.kind == TomlValue::Kind::kString) return names.push_back(item.text);
+    reader.refuse("avoid", "the name of an object, or a list of names");
+  };
+  if (value->kind != TomlValue::Kind::kArray)
+    add(*value);
+  else
+    for (const TomlValue& item : value->items) add(item);
+  return names;
+}
+
+std::optional<Flock> read_flock(TableReader& parent, const Scene& scene, double scale) {
+  const TomlValue* table = parent.table("flock");
+  if (!table) return std::nullopt;
+  TableReader reader(parent.source(), *table, parent.path("flock"), kFlockKeys);
+  Flock flock;
+  flock.count = static_cast<std::uint32_t>(reader.whole("count", flock.count, 1, kMostFlock));
+  flock.mill = reader.choice("kind", parent.has("track") ? "stream" : "mill",
+                             std::to_array<Key>({"mill", "stream"})) == "mill";
+  flock.radius_m = reader.vector3("radius_m", flock.radius_m, {0, 1e4, true, false, "metres"});
+  flock.speed_m_s = reader.number("speed_m_s", flock.speed_m_s, {0, 100, true, false, "m/s"});
+  flock.seed = reader.whole("seed", scene.seed, 0, INT64_MAX);
+  flock.avoid_names = read_avoid(reader);
+  flock.place_avoid = reader.place("avoid");
+  flock.avoid_m = reader.number("avoid_m", flock.avoid_m, {0, 1e3, true, false, "metres"});
+  if (reader.has("avoid_m") && flock.avoid_names.empty()) reader.refuse("avoid_m", "beside avoid");
+  if (reader.has("speed_m_s") && !flock.mill)
+    reader.refuse("speed_m_s", "of a mill; a stream has its track's");
+  flock.scale = scale;
+  if (!reader.ok()) parent.fail(reader.status().error());
+  for (const Key key : {"copies", "copies_file", "scatter"})
+    if (parent.has(key)) parent.refuse(key, "no such key beside flock");
+  return flock;
+}
+
 ObjectDraft read_object(TableReader& reader, const Scene& scene, const std::string& default_name,
                         std::uint16_t default_class) {
   ObjectDraft draft;
@@ -233,6 +273,8 @@ ObjectDraft read_object(TableReader& reader, const Scene& scene, const std::stri
   object.clip_rate = reader.number("clip_rate", 1.0, {-1000, 1000});
   object.copies = read_copies(reader);
   draft.scatter = read_scatter(reader, scene.seed);
+  object.flock = read_flock(reader, scene, object.scale.x);
+  if (object.flock) object.copies.assign(object.flock->count, Mat4(1.0));
   return draft;
 }
 

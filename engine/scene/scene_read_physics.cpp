@@ -116,7 +116,7 @@ class VehiclePhysicsReader {
     }
     Dynamics dynamics;
     dynamics.file = reader_.file("dynamics");
-    for (const Key key : {"track", "scatter", "copies", "copies_file", "on"})
+    for (const Key key : {"track", "scatter", "copies", "copies_file", "flock", "on"})
       if (reader_.has(key)) reader_.refuse(key, "no such key beside dynamics");
     if (reader_.has("collision") && object_.object.collision != Collision::kHull)
       reader_.refuse("collision", "\"hull\", beside dynamics");
@@ -184,7 +184,7 @@ class VehiclePhysicsReader {
     Human human;
     human.file = reader_.file("human");
     for (const Key key :
-         {"track", "scatter", "copies", "copies_file", "on", "collision", "dynamics"})
+         {"track", "scatter", "copies", "copies_file", "flock", "on", "collision", "dynamics"})
       if (reader_.has(key)) reader_.refuse(key, "no such key beside human");
     if (!object_.request)
       reader_.refuse("human", "no such key for what is not drawn: its joints are moved");

@@ -69,6 +69,7 @@ void read_camera(TableReader& reader, Camera& camera) {
   camera.antialias = reader.flag("antialias", false);
   camera.exposure = read_exposure(reader);
   camera.detail = read_detail(reader);
+  read_camera_terms(reader, camera);
 }
 
 void read_lamp(TableReader& reader, Lamp& lamp) {

@@ -10,9 +10,9 @@ namespace neritic::testbed {
 
 bool Datasets::of_cameras() const {
   using enum Dataset;
-  return std::ranges::any_of(
-      std::array{kColor, kDepth, kNormals, kLabels, kInstances, kMotion, kCoco},
-      [&](Dataset one) { return has(one); });
+  return std::ranges::any_of(std::array{kColor, kDepth, kNormals, kLabels, kInstances, kMotion,
+                                        kCoco, kLinear, kRaw, kBoxes, kKitti, kPanoptic},
+                             [&](Dataset one) { return has(one); });
 }
 
 bool Datasets::of_sonars() const {
@@ -39,15 +39,19 @@ Result<Datasets> parse_datasets(std::string_view flag, std::span<const std::stri
 
 Capture capture_of(const Datasets& datasets) {
   using enum Dataset;
-  const bool coco = datasets.has(kCoco);
-  return {.color = datasets.has(kColor),
-          .depth = datasets.has(kDepth),
+  const bool linear = datasets.has(kLinear) || datasets.has(kRaw);
+  const bool boxes = datasets.has(kBoxes) || datasets.has(kKitti);
+  const bool segments = datasets.has(kCoco) || datasets.has(kPanoptic);
+  return {.color = linear || datasets.has(kColor),
+          .depth = boxes || datasets.has(kDepth),
           .normals = datasets.has(kNormals),
-          .labels = coco || datasets.has(kLabels),
-          .instances = coco || datasets.has(kInstances),
+          .labels = segments || datasets.has(kLabels),
+          .instances = boxes || segments || datasets.has(kInstances),
           .motion = datasets.has(kMotion),
           .echoes = datasets.has(kSonar),
-          .poses = datasets.has(kTrajectory)};
+          .poses = datasets.has(kTrajectory),
+          .linear = linear,
+          .boxes = boxes};
 }
 
 }  // namespace neritic::testbed

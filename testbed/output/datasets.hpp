@@ -21,17 +21,26 @@ enum class Dataset {
   kSonar,       // what sonars hear, and accumulate
   kCoco,        // boxes and masks of what cameras see
   kTrajectory,  // where every participant is
+  kLinear,      // of cameras that name it: the picture before the tone curve
+  kRaw,         // of cameras that name it: the image sensor's counts
+  kBoxes,       // of what cameras see, in two and three dimensions
+  kKitti,       // the same as KITTI's files
+  kPanoptic,    // segments as COCO's panoptic format
 };
 // In the order of Dataset.
 inline constexpr std::string_view kDatasetNames[] = {
-    "color", "depth", "normals", "labels", "instances", "motion", "sonar", "coco", "trajectory"};
+    "color", "depth",      "normals", "labels", "instances", "motion", "sonar",
+    "coco",  "trajectory", "linear",  "raw",    "boxes",     "kitti",  "panoptic"};
 
 class Datasets {
  public:
   Datasets() = default;  // none
+  // What is written without a choice: not the formats that say again what others say.
   static Datasets all() {
     Datasets out;
     out.bits_.set();
+    for (const Dataset again : {Dataset::kBoxes, Dataset::kKitti, Dataset::kPanoptic})
+      out.bits_.reset(static_cast<std::size_t>(again));
     return out;
   }
   bool has(Dataset one) const { return bits_.test(static_cast<std::size_t>(one)); }

@@ -15,6 +15,8 @@ FrameFiles::FrameFiles(Session& session, FrameFilesOptions options)
       options_(std::move(options)),
       survey_(session.scene(), options_.out, options_.survey),
       coco_(options_.out / "coco.json", session.scene().class_names),
+      kitti_(options_.out, session.scene().class_names),
+      panoptic_(options_.out, session.scene().class_names),
       trajectory_(participants_of(session.scene()), options_.out) {}
 
 Status FrameFiles::accept(const FrameResult& frame) {
@@ -53,14 +55,19 @@ Status FrameFiles::write_camera(const std::filesystem::path& folder, const std::
     far_pixels_ += static_cast<std::uint64_t>(std::ranges::count_if(
         eye.depth.data, [](float d) { return std::isfinite(d) && d > kFarthestOfPng_m; }));
   }
-  if (!datasets.has(Dataset::kCoco)) return {};
-  const std::string picture = folder.filename().string() + "/" + name + "/color.png";
-  return coco_.add(picture, name, eye, frame);
+  const std::filesystem::path part = folder.filename() / name;
+  const std::string picture = (part / "color.png").generic_string();
+  if (datasets.has(Dataset::kBoxes))
+    NERITIC_TRY_STATUS(write_boxes(folder / name, eye, session_.scene().class_names));
+  if (datasets.has(Dataset::kKitti)) NERITIC_TRY_STATUS(kitti_.add(name, eye, frame.frame));
+  if (datasets.has(Dataset::kPanoptic)) NERITIC_TRY_STATUS(panoptic_.add(part, picture, eye));
+  return datasets.has(Dataset::kCoco) ? coco_.add(picture, name, eye, frame) : Status();
 }
 
 Status FrameFiles::finish() {
   NERITIC_TRY(wrote_track_, survey_.write(facts_));
   NERITIC_TRY_STATUS(trajectory_.finish());
+  NERITIC_TRY_STATUS(panoptic_.finish());
   return coco_.finish();
 }
 

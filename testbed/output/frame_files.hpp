@@ -5,6 +5,7 @@
 #include <set>
 
 #include "testbed/output/camera_coco.hpp"
+#include "testbed/output/label_files.hpp"
 #include "testbed/output/survey.hpp"
 #include "testbed/output/trajectory.hpp"
 #include "testbed/sensors/frame_sink.hpp"
@@ -40,6 +41,8 @@ class FrameFiles final : public FrameSink {
   FrameFilesOptions options_;
   Survey survey_;
   CameraCoco coco_;
+  KittiFiles kitti_;
+  PanopticFiles panoptic_;
   TrajectoryFiles trajectory_;
   std::uint64_t far_pixels_ = 0, pixels_ = 0;  // of depth.png
   FrameFacts facts_;                           // of the newest frame

@@ -31,6 +31,26 @@ nlohmann::json pose_of(const Pose& pose) {
   return {{"position_m", {p.x, p.y, p.z}}, {"rotation_xyzw", {q.x, q.y, q.z, q.w}}};
 }
 
+// What a picture has beyond a pinhole's, as OpenCV and EMVA 1288 name it.
+void add_camera(const ViewImages& view, nlohmann::json& meta) {
+  if (view.lens) {
+    const auto& k = view.lens->k;
+    const auto& p = view.lens->p;
+    const bool fisheye = view.lens->model == scene::LensModel::kFisheye;
+    meta["lens"] = {{"model", fisheye ? "fisheye" : "brown_conrady"},
+                    {"opencv", fisheye ? nlohmann::json{k[0], k[1], k[2], k[3]}
+                                       : nlohmann::json{k[0], k[1], p[0], p[1], k[2]}}};
+  }
+  if (view.sensor)
+    meta["sensor"] = {{"gain_db", view.sensor->gain_db},
+                      {"full_well_e", view.sensor->full_well_e},
+                      {"read_noise_e", view.sensor->read_noise_e},
+                      {"bits", view.sensor->bits},
+                      {"saturation", view.sensor->saturation()},
+                      {"electrons_per_unit", view.sensor->electrons_per_unit()},
+                      {"bayer", scene::kBayerNames[static_cast<int>(view.sensor->bayer)]}};
+}
+
 nlohmann::json meta_of(const ViewImages& view, const FrameFacts& facts) {
   return {{"width", view.width},
           {"height", view.height},
@@ -59,8 +79,9 @@ nlohmann::json meta_of(const ViewImages& view, const FrameFacts& facts) {
 // last: where one is, it describes the arrays beside it.
 Status remove_earlier_view(const std::filesystem::path& folder) {
   NERITIC_TRY_STATUS(remove_file(folder / "meta.json"));
-  for (const char* name : {"depth", "normals", "labels", "instances", "motion", "color"})
-    for (const char* ending : {".npy", ".npz", ".png"})
+  for (const char* name :
+       {"depth", "normals", "labels", "instances", "motion", "color", "raw", "boxes", "panoptic"})
+    for (const char* ending : {".npy", ".npz", ".png", ".exr", ".json"})
       NERITIC_TRY_STATUS(remove_file(folder / (std::string(name) + ending)));
   return {};
 }
@@ -138,6 +159,7 @@ Status write_view(const std::filesystem::path& folder, const ViewImages& view,
   };
   const Packing packing = format.packing;
   nlohmann::json meta = meta_of(view, facts);
+  add_camera(view, meta);
   if (wants(Dataset::kDepth, view.depth)) {
     if (packing == Packing::kPng) {
       NERITIC_TRY_STATUS(write_raster(folder, "depth", depth_units(view.depth), packing));
@@ -160,6 +182,10 @@ Status write_view(const std::filesystem::path& folder, const ViewImages& view,
     NERITIC_TRY_STATUS(write_raster(folder, "instances", view.instances, packing));
   if (wants(Dataset::kMotion, view.motion))
     NERITIC_TRY_STATUS(write_raster(folder, "motion", view.motion, packing));
+  if (wants(Dataset::kLinear, view.linear))
+    NERITIC_TRY_STATUS(scene::write_exr(folder / "color.exr", view.linear));
+  if (wants(Dataset::kRaw, view.raw))
+    NERITIC_TRY_STATUS(scene::write_png16(folder / "raw.png", view.raw));
   if (wants(Dataset::kColor, view.color))
     NERITIC_TRY_STATUS(scene::write_png8(folder / "color.png", view.color));
   return write_json(folder / "meta.json", meta);

@@ -1,5 +1,6 @@
 #include "testbed/sensors/decode.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/packing.hpp>
@@ -52,6 +53,39 @@ void decode_color(std::span<const std::uint32_t> texels, ViewImages& out) {
     to += 3;
   }
   std::memcpy(to, &texels.back(), 3);
+}
+
+namespace {
+
+Vec3f half_color(std::uint64_t texel) {
+  return Vec3f(glm::unpackHalf4x16(texel));
+}
+
+}  // namespace
+
+void decode_linear(std::span<const std::uint64_t> texels, ViewImages& out) {
+  out.linear = ImageF32(out.width, out.height, 3);
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    const Vec3f color = half_color(texels[i]);
+    for (int c = 0; c < 3; ++c) out.linear.data[3 * i + static_cast<std::size_t>(c)] = color[c];
+  }
+}
+
+void decode_raw(std::span<const std::uint64_t> texels, const scene::ImageSensor& sensor,
+                const Vec3f& white, ViewImages& out) {
+  out.raw = ImageU16(out.width, out.height, 1);
+  // The colour of each place in a block of 2 x 2, row by row.
+  static constexpr int kColors[][4] = {
+      {0, 0, 0, 0}, {0, 1, 1, 2}, {2, 1, 1, 0}, {1, 0, 2, 1}, {1, 2, 0, 1}};
+  const int* colors = kColors[static_cast<std::size_t>(sensor.bayer)];
+  const double steps = std::exp2(sensor.bits) - 1.0;
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    const std::size_t x = i % out.width, y = i / out.width;
+    const int color = colors[2 * (y % 2) + x % 2];
+    const double value = half_color(texels[i])[color] / white[color];
+    const double counts = std::round(value / sensor.saturation() * steps);
+    out.raw.data[i] = static_cast<std::uint16_t>(std::clamp(counts, 0.0, steps));
+  }
 }
 
 void decode_motion(std::span<const float> texels, std::span<const float> depth_texels,

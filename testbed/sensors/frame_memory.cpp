@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/memory.hpp"
+#include "testbed/sensors/session.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -19,7 +20,9 @@ std::vector<Picture> pictures_of(const scene::Scene& scene, const FrameRequest& 
   std::vector<Picture> pictures;
   for (std::size_t i = 0; i < request.cameras.size(); ++i) {
     const scene::Camera& camera = scene.cameras[request.cameras[i]];
-    pictures.push_back({"camera " + camera.name, camera.width, camera.height,
+    const auto lens = lens_view_of(camera);
+    pictures.push_back({"camera " + camera.name, lens ? lens->width : camera.width,
+                        lens ? lens->height : camera.height,
                         camera.stereo_baseline_m > 0.0 ? 2u : 1u, request.camera_capture(i),
                         camera.detail});
   }

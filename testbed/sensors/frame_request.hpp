@@ -20,6 +20,8 @@ struct Capture {
   bool motion = true;  // of cameras and view sets
   bool echoes = true;  // of sonars; without them a sonar's view gives its geometry alone
   bool poses = false;  // of every participant (participants.hpp)
+  bool linear = true;  // of cameras that name them: the linear picture, and the raw one
+  bool boxes = false;  // of cameras: of each instance; with depth and instances
   // Read-backs are declared, so that the frame can be read to a FrameResult. Else the frame's
   // handles are all there is, and nothing leaves the GPU.
   bool to_host = true;
@@ -35,6 +37,16 @@ struct Capture {
 inline constexpr Capture kColorOnGpu =
     Capture{.color = true, .motion = false, .to_host = false}.without_geometry();
 
+// What a camera's picture has beyond a pinhole's.
+struct CameraPicture {
+  scene::CameraTerms terms;
+  std::optional<scene::LensView> lens;  // with terms.lens: then the views are its pinhole's
+  std::uint32_t width = 1, height = 1;  // of the picture
+  double focal_px = 1.0;
+  std::uint32_t stream = 0;                      // of its noise: the camera's number
+  const std::vector<glm::dvec2>* map = nullptr;  // lens_map(), where arrays come to the host
+};
+
 // A view set that is no camera of the scene: a window's, a headset's views, the sides of a cube.
 // One multiview pass draws all its views.
 struct ViewsRequest {
@@ -44,6 +56,7 @@ struct ViewsRequest {
   bool antialias = false;
   scene::PictureDetail detail = {};  // what the camera's file says, or a governor
   Capture capture = kColorOnGpu;
+  std::optional<CameraPicture> camera = {};  // absent: a pinhole's
 };
 
 struct FrameRequest {

@@ -14,6 +14,7 @@
 #include "sonar/label_energy.hpp"
 #include "sonar/quality.hpp"
 #include "sonar/reference.hpp"
+#include "testbed/sensors/instance_boxes.hpp"
 
 namespace neritic::testbed {
 
@@ -29,6 +30,11 @@ struct ViewImages {
   ImageU16 instances;
   ImageU8 color;    // RGB, sRGB
   ImageF32 motion;  // 2 channels, pixels to the next frame
+  ImageF32 linear;  // RGB, exposed radiance before the tone curve: 1 is white in the scene's light
+  ImageU16 raw;     // counts of the image sensor behind its colour filters
+  std::optional<scene::Lens> lens;  // then a pixel is intrinsics * through_lens(point)
+  std::optional<scene::ImageSensor> sensor;
+  std::vector<InstanceBox> boxes;
 };
 
 // A camera's images, or a view set's of the request.

@@ -94,6 +94,7 @@ Capture capture_of(ImageKind kind) {
   out.labels = kind == kLabels;
   out.instances = kind == kInstances;
   out.motion = kind == kMotion;
+  out.linear = false;
   out.echoes = kind == kEchoes || kind == kEchoLabels;
   return out;
 }

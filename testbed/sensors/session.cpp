@@ -1,10 +1,12 @@
 #include "testbed/sensors/session.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/core/check.hpp"
 #include "engine/core/clock.hpp"
 #include "testbed/sensors/frame_memory.hpp"
+#include "testbed/sensors/lens_arrays.hpp"
 #include "testbed/sensors/participants.hpp"
 #include "testbed/sensors/sonar_check.hpp"
 #include "testbed/sensors/sonar_sensor.hpp"
@@ -68,6 +70,24 @@ void Session::dim_lamp(std::size_t index, double share) {
   scene_.lamps[index].intensity_cd = share * lamp_cd_[index];
 }
 
+std::optional<CameraPicture> Session::picture_of(std::size_t index, const Capture& capture) {
+  const scene::Camera& camera = scene_.cameras[index];
+  if (!camera.terms.changes_picture() && !camera.terms.linear) return std::nullopt;
+  CameraPicture out{.terms = camera.terms,
+                    .lens = lens_view_of(camera),
+                    .width = camera.width,
+                    .height = camera.height,
+                    .focal_px = camera.height / 2.0 / std::tan(camera.vertical_fov_rad / 2.0),
+                    .stream = static_cast<std::uint32_t>(index)};
+  if (!out.lens) return out;
+  out.focal_px = out.lens->lens.fx;
+  if (!capture.to_host || !(capture.geometry() || capture.motion)) return out;
+  auto [at, is_new] = lens_maps_.try_emplace(index);
+  if (is_new) at->second = lens_map(*camera.terms.lens, *out.lens, camera.width, camera.height);
+  out.map = &at->second;
+  return out;
+}
+
 Result<std::unique_ptr<SensorFrame>> Session::declare(graph::FrameGraph& graph,
                                                       const FrameRequest& request) {
   // A CPU's driver promises memory that the machine does not have, and the system ends programs
@@ -103,7 +123,7 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
   const FrameParts parts{
       graph,      device_,    *renderer_, scene_,    *gpu_scene_,
       motion,     work.state, deformed,   readback_, request.seed.value_or(scene_.seed),
-      work.light, *sun_maps_, moving_,    still_};
+      work.light, *sun_maps_, moving_,    still_,    request.frame};
   const auto add = [&](const std::string& label, const ViewsRequest& set, std::size_t index,
                        auto& works, std::vector<SensorFrame::Views>& out) -> Status {
     works.push_back(std::make_unique<FrameWork::Picture>());
@@ -120,7 +140,8 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
     NERITIC_TRY_STATUS(
         add("camera " + camera.name,
             {camera.name, camera_views(motion, camera, request.time_s, request.next_time_s),
-             camera.exposure, camera.antialias, camera.detail, request.camera_capture(k)},
+             camera.exposure, camera.antialias, camera.detail, request.camera_capture(k),
+             picture_of(i, request.camera_capture(k))},
             i, work.cameras, frame->cameras));
   }
   for (std::size_t i = 0; i < request.views.size(); ++i)

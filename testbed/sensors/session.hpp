@@ -4,7 +4,9 @@
 // render does both for one frame. Rendering thread only.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,6 +64,8 @@ class Session {
   explicit Session(gpu::Device& device);
   Result<std::unique_ptr<SensorFrame>> declare_sensors(graph::FrameGraph& graph,
                                                        const FrameRequest& request);
+  // What the camera's picture has beyond a pinhole's; nothing where it names nothing.
+  std::optional<CameraPicture> picture_of(std::size_t camera, const Capture& capture);
   Status run_to_end(graph::FrameGraph& graph, SensorFrame& frame);
   gpu::Device& device_;
   scene::Scene scene_;
@@ -70,7 +74,8 @@ class Session {
   std::unique_ptr<render::Renderer> renderer_;
   std::unique_ptr<render::GpuScene> gpu_scene_;
   std::unique_ptr<EchoTables> echo_tables_;
-  std::vector<std::unique_ptr<SonarSensor>> sonars_;  // the scene's, as far as asked for
+  std::vector<std::unique_ptr<SonarSensor>> sonars_;          // the scene's, as far as asked for
+  std::map<std::size_t, std::vector<glm::dvec2>> lens_maps_;  // by camera, as far as asked for
   ReadbackPool readback_;
   std::unique_ptr<SunMaps> sun_maps_;
   std::vector<std::uint8_t> moving_, still_;  // flags by object
@@ -84,8 +89,11 @@ class Session {
 inline constexpr double kDefaultGBufferScale = 0.5;
 inline constexpr const char* kDefaultGather = "plane";
 
-// The views of a camera of the scene: one, or two for a stereo pair, half the baseline to each
-// side; where it is at time_s and, for motion, at next_time_s.
+// The pinhole from which a camera's lens makes its picture; nothing for a camera without a lens.
+// Loading has checked the lens.
+std::optional<scene::LensView> lens_view_of(const scene::Camera& camera);
+// The views of a camera of the scene (through a lens: of its pinhole): one, or two for a stereo
+// pair, half the baseline to each side; where it is at time_s and, for motion, at next_time_s.
 render::ViewSet camera_views(const scene::MotionSource& motion, const scene::Camera& camera,
                              double time_s = 0.0, double next_time_s = 0.0);
 

@@ -8,6 +8,7 @@
 #include "engine/render/lighting.hpp"
 #include "engine/render/sea_waves.hpp"
 #include "testbed/sensors/decode.hpp"
+#include "testbed/sensors/lens_arrays.hpp"
 #include "testbed/sensors/session.hpp"
 
 namespace neritic::testbed {
@@ -111,6 +112,68 @@ Result<render::LightImages> declare_light(const FrameParts& frame, const std::st
   return light;
 }
 
+// Gains that make a white card at the camera neutral, as the water leaves daylight there.
+Vec3f automatic_white(const shared::Lighting& lighting) {
+  if (!(lighting.terms & shared::kLightSun)) return Vec3f(1.0f);
+  const bool water = (lighting.terms & shared::kLightWater) != 0;
+  const float depth_m = water ? std::max(0.0f, lighting.origin_depth_m) : 0.0f;
+  Vec3f light = lighting.surface_irradiance;
+  for (int i = 0; i < 3; ++i) light[i] *= std::exp(-lighting.diffuse_attenuation[i] * depth_m);
+  if (!(light.y > 0.0f)) return Vec3f(1.0f);
+  return glm::clamp(Vec3f(light.y) / glm::max(light, Vec3f(1e-30f)), 0.25f, 4.0f);
+}
+
+struct CameraHdr {
+  graph::ImageHandle hdr;
+  Vec3f white{1.0f};
+};
+
+// What lens and sensor make of the picture; as it was where none is named.
+Result<CameraHdr> declare_camera(const FrameParts& frame, const std::string& prefix,
+                                 graph::ImageHandle hdr, std::uint32_t layers,
+                                 const CameraPicture& picture, const shared::Lighting& lighting) {
+  const scene::CameraTerms& terms = picture.terms;
+  if (!terms.changes_picture()) return CameraHdr{hdr};
+  shared::CameraParams params{};
+  std::uint32_t bits = 0;
+  params.focal_px = static_cast<float>(picture.focal_px);
+  params.center_px = {0.5f * float(picture.width), 0.5f * float(picture.height)};
+  if (terms.lens) {
+    bits |= shared::kCameraLens;
+    params.model =
+        terms.lens->model == scene::LensModel::kFisheye ? shared::kLensFisheye : shared::kLensBrown;
+    for (int i = 0; i < 4; ++i)
+      params.k[i] = static_cast<float>(terms.lens->k[static_cast<std::size_t>(i)]);
+    params.p = {float(terms.lens->p[0]), float(terms.lens->p[1])};
+    params.source_focal_px = static_cast<float>(picture.lens->source.fx);
+    params.source_center_px = {float(picture.lens->source.cx), float(picture.lens->source.cy)};
+  }
+  if (terms.vignette > 0.0) {
+    bits |= shared::kCameraVignette;
+    params.vignette = static_cast<float>(terms.vignette);
+  }
+  if (terms.sensor) {
+    bits |= shared::kCameraNoise;
+    params.electrons = static_cast<float>(terms.sensor->electrons_per_unit());
+    params.read_noise_e = static_cast<float>(terms.sensor->read_noise_e);
+    params.saturation = static_cast<float>(terms.sensor->saturation());
+    params.steps = static_cast<float>(std::exp2(terms.sensor->bits) - 1.0);
+    params.seed = static_cast<std::uint32_t>(frame.seed ^ (frame.seed >> 32));
+    params.stream = picture.stream;
+    params.frame = frame.frame;
+  }
+  CameraHdr out;
+  if (terms.white_balance) {
+    bits |= shared::kCameraWhite;
+    out.white = terms.white_balance->automatic ? automatic_white(lighting)
+                                               : Vec3f(terms.white_balance->gains);
+    params.white = out.white;
+  }
+  NERITIC_TRY(out.hdr, frame.renderer.declare_camera(frame.graph, prefix, hdr, params, bits,
+                                                     picture.width, picture.height, layers));
+  return out;
+}
+
 // The tonemapped picture of a surface G-buffer.
 Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::string& prefix,
                                          const render::GBuffer& g, const render::ViewSet& views,
@@ -157,11 +220,27 @@ Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::str
                                                               lighting, work.particles.particles,
                                                               static_cast<float>(shutter)));
   }
+  std::uint32_t width = g.width, height = g.height;
+  if (request.camera) {
+    NERITIC_TRY(const CameraHdr made,
+                declare_camera(frame, prefix, hdr, g.layers, *request.camera, lighting));
+    hdr = made.hdr;
+    work.white = made.white;
+    width = request.camera->width;
+    height = request.camera->height;
+    const scene::CameraTerms& terms = request.camera->terms;
+    const bool raw = terms.sensor && terms.sensor->bayer != scene::Bayer::kNone;
+    if (request.capture.to_host && request.capture.linear && (terms.linear || raw)) {
+      NERITIC_TRY(work.linear,
+                  frame.readback.declare(frame.graph, frame.device, prefix + "linear", hdr,
+                                         render::kHdrFormat, width, height, g.layers));
+    }
+  }
   NERITIC_TRY(const graph::ImageHandle color,
-              frame.renderer.declare_picture(frame.graph, prefix, hdr, g.width, g.height, g.layers,
+              frame.renderer.declare_picture(frame.graph, prefix, hdr, width, height, g.layers,
                                              request.antialias));
   const render::ViewSet& asked = work.views;
-  if (g.width == asked.width && g.height == asked.height) return color;
+  if (request.camera || (g.width == asked.width && g.height == asked.height)) return color;
   return frame.renderer.declare_resize(frame.graph, prefix, color, asked.width, asked.height,
                                        g.layers);
 }
@@ -181,31 +260,61 @@ render::GBufferParts parts_of(const Capture& capture) {
 
 namespace {
 
+PictureMap picture_map(const ViewImages& eye) {
+  return {eye.intrinsics, eye.lens, eye.near_m, eye.width, eye.height};
+}
+
+// The linear picture and the raw one, of a camera that names them.
+void decode_unencoded(const ViewsWork& work, std::size_t i, std::size_t pixels, ViewImages& eye) {
+  const auto texels = layer_of<std::uint64_t>(*work.linear, i, pixels);
+  const scene::CameraTerms& terms = work.camera->terms;
+  if (terms.linear) decode_linear(texels, eye);
+  if (terms.sensor && terms.sensor->bayer != scene::Bayer::kNone)
+    decode_raw(texels, *terms.sensor, work.white, eye);
+}
+
 ViewImages decode_view(const ViewsWork& work, std::size_t i) {
   const render::ViewDesc& view = work.views.views[i];
+  const bool lens = work.camera && work.camera->lens;
   ViewImages eye;
   eye.world_from_view = view.world_from_view;
   eye.intrinsics = intrinsics_of(view.tangents, work.views.width, work.views.height);
   eye.near_m = view.near_m;
   eye.width = work.views.width;
   eye.height = work.views.height;
-  const std::size_t pixels = std::size_t{eye.width} * eye.height;
+  // Arrays as the pinhole has them; the picture as the camera delivers it.
+  ViewImages pinhole = eye;
+  if (work.camera) {
+    eye.sensor = work.camera->terms.sensor;
+    eye.width = work.camera->width;
+    eye.height = work.camera->height;
+  }
+  if (lens) {
+    eye.lens = work.camera->terms.lens;
+    eye.intrinsics = work.camera->lens->lens;
+  }
+  ViewImages& arrays = lens ? pinhole : eye;
+  const std::size_t pixels = std::size_t{arrays.width} * arrays.height;
+  const std::size_t picture_pixels = std::size_t{eye.width} * eye.height;
   // Two halves of about the same bytes, which share nothing but the sizes.
   const std::span<const float> depth =
       work.depth ? layer_of<float>(*work.depth, i, pixels) : std::span<const float>();
   const auto shape = [&] {
-    if (work.capture.depth) decode_depth(depth, eye);
-    if (work.normal) decode_normals(layer_of<std::uint32_t>(*work.normal, i, pixels), depth, eye);
+    if (work.capture.depth) decode_depth(depth, arrays);
+    if (work.normal)
+      decode_normals(layer_of<std::uint32_t>(*work.normal, i, pixels), depth, arrays);
   };
   const auto look = [&] {
     if (work.label)
       decode_labels(layer_of<std::uint32_t>(*work.label, i, pixels), work.capture.labels,
-                    work.capture.instances, eye);
-    if (work.color) decode_color(layer_of<std::uint32_t>(*work.color, i, pixels), eye);
+                    work.capture.instances, arrays);
+    if (work.color) decode_color(layer_of<std::uint32_t>(*work.color, i, picture_pixels), eye);
+    if (work.linear) decode_unencoded(work, i, picture_pixels, eye);
     if (work.motion)
       decode_motion(
           layer_of<float>(*work.motion, i, pixels * 2), depth,
-          glm::conjugate(view.next_world_from_view.rotation) * view.world_from_view.rotation, eye);
+          glm::conjugate(view.next_world_from_view.rotation) * view.world_from_view.rotation,
+          arrays);
   };
   if (pixels < kWorthAThread || !(work.depth && (work.color || work.motion))) {
     shape();
@@ -214,6 +323,12 @@ ViewImages decode_view(const ViewsWork& work, std::size_t i) {
     auto other = std::async(std::launch::async, look);
     shape();
     other.get();
+  }
+  if (lens && work.camera->map)
+    arrays_through_lens(pinhole, *eye.lens, *work.camera->lens, *work.camera->map, eye);
+  if (!work.boxes.empty()) {
+    eye.boxes = work.boxes[i];
+    judge_boxes(eye.boxes, picture_map(eye), eye.depth, eye.instances);
   }
   return eye;
 }
@@ -228,6 +343,19 @@ Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::str
   NERITIC_TRY_STATUS(check_size(frame.device, label, request.views));
   work.views = request.views;
   work.capture = capture;
+  work.camera = request.camera;
+  if (capture.boxes && capture.to_host)
+    for (const render::ViewDesc& view : work.views.views) {
+      PictureMap map{intrinsics_of(view.tangents, work.views.width, work.views.height),
+                     {},
+                     view.near_m,
+                     work.views.width,
+                     work.views.height};
+      if (work.camera && work.camera->lens)
+        map = {work.camera->lens->lens, work.camera->terms.lens, view.near_m, work.camera->width,
+               work.camera->height};
+      work.boxes.push_back(instance_boxes(frame.scene, frame.state, view.world_from_view, map));
+    }
   const std::string prefix = request.name + " ";
   const auto declare = [&](const std::string& name, render::GBufferKind kind,
                            const render::ViewSet& views, render::DrawList& draws,
@@ -236,7 +364,8 @@ Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::str
     return frame.renderer.declare_gbuffer(frame.graph, name, kind, frame.gpu_scene, frame.state,
                                           frame.deformed, views, draws, parts);
   };
-  const bool coarse = capture.color && request.detail.resolution < 1.0;
+  // Lens and image sensor work on the whole picture.
+  const bool coarse = capture.color && request.detail.resolution < 1.0 && !request.camera;
   SensorFrame::Views out{.near_m = work.views.views.front().near_m,
                          .width = work.views.width,
                          .height = work.views.height,
@@ -270,7 +399,11 @@ Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::str
                                   out.width, out.height, out.layers);
   };
   if (capture.color) {
-    NERITIC_TRY(work.color, bring("color", out.color, render::kColorFormat));
+    const std::uint32_t width = request.camera ? request.camera->width : out.width,
+                        height = request.camera ? request.camera->height : out.height;
+    NERITIC_TRY(work.color,
+                frame.readback.declare(frame.graph, frame.device, prefix + "color", out.color,
+                                       render::kColorFormat, width, height, out.layers));
   }
   NERITIC_TRY_STATUS(bring_geometry(frame, prefix, g, work));
   if (capture.motion && g.motion) {
@@ -305,6 +438,14 @@ std::vector<ViewImages> decode_views(const ViewsWork& work) {
   return views;
 }
 
+std::optional<scene::LensView> lens_view_of(const scene::Camera& camera) {
+  if (!camera.terms.lens) return std::nullopt;
+  auto view =
+      scene::lens_view(*camera.terms.lens, camera.width, camera.height, camera.vertical_fov_rad);
+  NERITIC_CHECK(view.ok(), "camera {}: {}", camera.name, view.error().message);
+  return *view;
+}
+
 render::ViewSet camera_views(const scene::MotionSource& motion, const scene::Camera& camera,
                              double time_s, double next_time_s) {
   render::ViewSet set;
@@ -312,6 +453,11 @@ render::ViewSet camera_views(const scene::MotionSource& motion, const scene::Cam
   set.height = camera.height;
   render::ViewDesc view;
   view.tangents = tangents_from_fov(camera.vertical_fov_rad, double(camera.width) / camera.height);
+  if (const auto lens = lens_view_of(camera)) {
+    set.width = lens->width;
+    set.height = lens->height;
+    view.tangents = lens->tangents;
+  }
   view.near_m = camera.near_m;
   const Pose center = motion.world_from(camera.mount, time_s);
   const Pose next_center = motion.world_from(camera.mount, next_time_s);

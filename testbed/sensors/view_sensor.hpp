@@ -41,6 +41,7 @@ struct FrameParts {
   SunMaps& sun_maps;
   // Flags by object: what may move, and its opposite.
   std::span<const std::uint8_t> moving, still;
+  std::uint32_t frame = 0;  // the request's: noise follows from it
 };
 
 // A view set in one frame: data that the passes borrow, and the buffers that the host reads.
@@ -54,8 +55,11 @@ struct ViewsWork {
   std::vector<render::ViewSet> cascades;  // of the sun; empty where it throws no shadows
   std::vector<render::ShadowMap> still_maps, moving_maps;  // of them, drawn in this frame
   render::ViewParticles particles;                         // of the scene's water
-  Readback depth, normal, label, color, motion;            // empty where they were not asked for
-  bool at_host() const { return depth || normal || label || color || motion; }
+  Readback depth, normal, label, color, motion, linear;    // empty where they were not asked for
+  std::optional<CameraPicture> camera;
+  Vec3f white{1.0f};                            // gains of the white balance
+  std::vector<std::vector<InstanceBox>> boxes;  // a view
+  bool at_host() const { return depth || normal || label || color || motion || linear; }
 };
 
 // Adds the passes of a view set. label: of errors, "camera NAME".

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "shaders.hpp"
+#include "shared/camera.h"
 #include "shared/caustics.h"
 #include "shared/forward_scatter.h"
 #include "shared/imgui.h"
@@ -110,6 +111,14 @@ const std::map<std::string, Offsets>& shared_structs() {
        {MEMBER(Waves, count), MEMBER(Waves, height_rms_m), MEMBER(Waves, slope2),
         MEMBER(Waves, fine_slope2), MEMBER(Waves, foam_height_m), MEMBER(Waves, foam_shift),
         MEMBER(Waves, eye_height_m), MEMBER(Waves, waves)}},
+      {"CameraParams",
+       {MEMBER(CameraParams, model), MEMBER(CameraParams, k), MEMBER(CameraParams, p),
+        MEMBER(CameraParams, focal_px), MEMBER(CameraParams, center_px),
+        MEMBER(CameraParams, source_focal_px), MEMBER(CameraParams, source_center_px),
+        MEMBER(CameraParams, vignette), MEMBER(CameraParams, white),
+        MEMBER(CameraParams, electrons), MEMBER(CameraParams, read_noise_e),
+        MEMBER(CameraParams, saturation), MEMBER(CameraParams, steps), MEMBER(CameraParams, seed),
+        MEMBER(CameraParams, stream), MEMBER(CameraParams, frame)}},
       {"ScatterPush",
        {MEMBER(ScatterPush, scattering), MEMBER(ScatterPush, high_cycles_rad),
         MEMBER(ScatterPush, low_cycles_rad), MEMBER(ScatterPush, angle_rad)}},

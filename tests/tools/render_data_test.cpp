@@ -198,7 +198,7 @@ TEST_F(RenderData, ANameThatIsNoneOrThatNothingGivesIsRefusedWithTheNames) {
   };
   EXPECT_EQ(said({"--only", "color,deph"}),
             "--only: found 'deph'; accepted: one or more of color, depth, normals, labels, "
-            "instances, motion, sonar, coco, trajectory");
+            "instances, motion, sonar, coco, trajectory, linear, raw, boxes, kitti, panoptic");
   EXPECT_EQ(said({"--only", "color", "--sensor", "ears"}),
             "--only: found color; accepted: that with a camera");
   EXPECT_EQ(said({"--only", "sonar", "--sensor", "eyes"}),

@@ -43,6 +43,8 @@ void add_render(CLI::App& app, Run& run) {
       ->add_option("--only", flags->only,
                    fmt::format("writes, and computes, these data alone, of each sensor that gives "
                                "them: {}; coco: boxes and masks of all cameras (OUT/coco.json); "
+                               "linear, raw: of cameras that name them; boxes, kitti, panoptic: "
+                               "only if named here (OUT/kitti, OUT/panoptic.json); "
                                "trajectory: where every participant is (OUT/trajectory.csv and "
                                "OUT/trajectory)",
                                join(testbed::kDatasetNames)))

@@ -1,0 +1,74 @@
+// What a camera's picture names beyond a pinhole's: lens, image sensor, white balance, vignette, a
+// linear picture. Each is absent, and unpaid, unless the scene names it. Plain values; any thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "engine/core/intrinsics.hpp"
+#include "engine/core/math.hpp"
+#include "engine/core/result.hpp"
+
+namespace neritic::scene {
+
+enum class LensModel { kBrownConrady, kFisheye };
+
+// Brown (1971) and Conrady (1919): k of r^2, r^4, r^6, p of the decentring, in OpenCV's order and
+// signs; or Kannala and Brandt (2006) as OpenCV's fisheye: an angle's radius is
+// angle (1 + k_0 angle^2 + k_1 angle^4 + k_2 angle^6 + k_3 angle^8).
+struct Lens {
+  LensModel model = LensModel::kBrownConrady;
+  std::array<double, 4> k{};
+  std::array<double, 2> p{};
+};
+
+enum class Bayer { kNone, kRggb, kBggr, kGrbg, kGbrg };
+inline constexpr const char* kBayerNames[] = {"none", "rggb", "bggr", "grbg", "gbrg"};
+
+// Photons to counts (EMVA 1288, release 4: a linear camera). The exposure says how bright a picture
+// is; the gain, which part of that the amplifier does instead of light.
+struct ImageSensor {
+  double gain_db = 0.0;
+  double full_well_e = 10000.0;  // electrons at saturation without gain
+  double read_noise_e = 3.0;     // standard deviation
+  double saturation_ev = 2.0;    // stops from a white surface in the scene's light to saturation
+  std::uint32_t bits = 12;       // of the converter
+  Bayer bayer = Bayer::kNone;    // of the raw picture; kNone: there is none
+
+  // Electrons of an exposed radiance of 1, and the exposed radiance that saturates.
+  double electrons_per_unit() const;
+  double saturation() const;
+};
+
+struct WhiteBalance {
+  bool automatic = false;  // a white card at the camera becomes neutral, within 2 stops
+  Vec3 gains{1.0};         // else these
+};
+
+struct CameraTerms {
+  std::optional<Lens> lens;
+  std::optional<ImageSensor> sensor;
+  std::optional<WhiteBalance> white_balance;
+  double vignette = 0.0;  // times cos^4 in the exponent; 0: none
+  bool linear = false;    // the picture before the tone curve too
+  bool changes_picture() const { return lens || sensor || white_balance || vignette > 0.0; }
+};
+
+// The pinhole that a lens's picture is made from: it sees all that the lens sees.
+struct LensView {
+  Intrinsics lens;    // of the lens's picture: pixels = focal length * distorted point + centre
+  Intrinsics source;  // of the pinhole
+  FrustumTangents tangents;
+  std::uint32_t width = 1, height = 1;  // of the pinhole's picture
+};
+// fov_rad: vertical; of a fisheye as it sees, of Brown and Conrady before distortion. kBadInput
+// where a pixel's ray is more than 80 degrees off the axis, or two rays meet in one pixel.
+Result<LensView> lens_view(const Lens& lens, std::uint32_t width, std::uint32_t height,
+                           double fov_rad);
+
+// Points of the plane at distance 1, x to the right and y down: without a lens and through it.
+glm::dvec2 through_lens(const Lens& lens, const glm::dvec2& plane);
+glm::dvec2 before_lens(const Lens& lens, const glm::dvec2& image);
+
+}  // namespace neritic::scene

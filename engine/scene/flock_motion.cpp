@@ -1,0 +1,120 @@
+#include "engine/scene/flock_motion.hpp"
+
+#include <cmath>
+
+#include "engine/core/random.hpp"
+
+namespace neritic::scene {
+namespace {
+
+// Velocities are differences over this time.
+constexpr double kStep_s = 0.04;
+// A fish's pitch, at most: schools keep level.
+constexpr double kSteepest = 0.45;  // rise over run
+
+// The streams of a fish's own numbers.
+enum Draw : std::uint64_t { kRing, kAngle, kHeight, kPhase, kSize, kDraws };
+
+// A swell that runs through the whole school: neighbours do nearly the same, and none keeps its
+// place for good. Wave vectors in 1 / radius; incommensurate, so that nothing repeats.
+struct Swell {
+  Vec3 direction, wave;
+  double turns_s, phase;
+};
+constexpr int kSwells = 4;
+
+struct School {
+  const Flock& flock;
+  RandomKey key;
+  Swell swells[kSwells];
+};
+
+School school_of(const Flock& flock) {
+  School school{flock, {flock.seed, 0x666c6f636b, 0}, {}};
+  for (std::uint64_t i = 0; i < kSwells; ++i) {
+    const auto draw = [&](std::uint64_t n) {
+      return random_uniform({flock.seed, 0x7377656c6c, 0}, 8 * i + n) * 2.0 - 1.0;
+    };
+    school.swells[i] = {Vec3(draw(0), 0.5 * draw(1), draw(2)),
+                        Vec3(draw(3), draw(4), draw(5)) * 2.2, 0.35 + 0.2 * draw(6), kPi * draw(7)};
+  }
+  return school;
+}
+
+// One fish, relative to the school's middle, before it dodges.
+Vec3 in_school(const School& school, std::uint64_t fish, double time_s) {
+  const Flock& flock = school.flock;
+  const auto draw = [&](Draw what) {
+    return random_uniform(school.key, fish * kDraws + static_cast<std::uint64_t>(what));
+  };
+  // A disc that thins out to its rim; a mill is hollow in its middle.
+  const double ring = std::sqrt(std::lerp(flock.mill ? 0.12 : 0.0, 1.0, draw(kRing)));
+  double angle = 2.0 * kPi * draw(kAngle);
+  const double height = (2.0 * draw(kHeight) - 1.0) * std::sqrt(1.0 - 0.8 * ring * ring);
+  if (flock.mill)  // every fish at the same speed, so inner ones get round sooner
+    angle += flock.speed_m_s * time_s / (ring * 0.5 * (flock.radius_m.x + flock.radius_m.z));
+  Vec3 at(ring * std::cos(angle), height, ring * std::sin(angle));
+  Vec3 drift(0.0);
+  for (const Swell& swell : school.swells)
+    drift += swell.direction *
+             std::sin(glm::dot(swell.wave, at) + 2.0 * kPi * swell.turns_s * 0.3 * time_s +
+                      swell.phase + 0.5 * draw(kPhase));
+  at += 0.11 * drift;
+  return at * flock.radius_m;
+}
+
+// Pushed out of the way: at distance r of what it avoids it swims at r + a exp(-r / a), which rises
+// with r everywhere and is at least a.
+Vec3 dodged(const Vec3& at, std::span<const Vec3> avoid, double avoid_m) {
+  Vec3 out = at;
+  for (const Vec3& from : avoid) {
+    const Vec3 away = out - from;
+    const double r = glm::length(away);
+    if (r > 12.0 * avoid_m) continue;
+    const double push = avoid_m * std::exp(-r / avoid_m);
+    out += r > 1e-9 ? away * (push / r) : Vec3(0.0, push, 0.0);
+  }
+  return out;
+}
+
+struct Instant {
+  Vec3 middle;
+  std::vector<Vec3> avoid;
+};
+
+Instant instant_of(const MotionSource& source, std::size_t object, double time_s) {
+  Instant out{source.world_from_object(object, time_s).position_m, {}};
+  for (const std::size_t other : source.scene().objects[object].flock->avoid)
+    out.avoid.push_back(source.world_from_object(other, time_s).position_m);
+  return out;
+}
+
+}  // namespace
+
+std::vector<Mat4> flock_copies(const MotionSource& source, std::size_t object, double time_s) {
+  const Flock& flock = *source.scene().objects[object].flock;
+  const School school = school_of(flock);
+  const Instant now = instant_of(source, object, time_s);
+  const Instant soon = instant_of(source, object, time_s + kStep_s);
+  const Mat4 object_from_world = glm::inverse(to_matrix(source.world_from_object(object, time_s)));
+  std::vector<Mat4> out(flock.count);
+  for (std::uint64_t i = 0; i < flock.count; ++i) {
+    const Vec3 at = dodged(now.middle + in_school(school, i, time_s), now.avoid, flock.avoid_m);
+    const Vec3 then =
+        dodged(soon.middle + in_school(school, i, time_s + kStep_s), soon.avoid, flock.avoid_m);
+    Vec3 way = then - at;
+    const double run = std::hypot(way.x, way.z);
+    way.y = std::clamp(way.y, -kSteepest * run, kSteepest * run);
+    const double length = glm::length(way);
+    const Vec3 back = length > 1e-12 ? way / -length : Vec3(0, 0, 1);
+    const Vec3 right = glm::normalize(glm::cross(Vec3(0, 1, 0), back));
+    const Vec3 up = glm::cross(back, right);
+    const double size =
+        flock.scale * std::lerp(0.75, 1.25, random_uniform(school.key, i * kDraws + kSize));
+    out[i] = object_from_world * Mat4(Vec4(right * size, 0.0), Vec4(up * size, 0.0),
+                                      Vec4(back * size, 0.0), Vec4(at, 1.0));
+  }
+  return out;
+}
+
+}  // namespace neritic::scene
