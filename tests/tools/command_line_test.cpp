@@ -106,7 +106,7 @@ TEST(CommandLine, HelpSaysWhatRenderWritesAndHowAPlanIsAskedFor) {
 TEST(CommandLine, AWrongSubcommandListsThem) {
   EXPECT_THAT(said({"rendre"}),
               HasSubstr("render, sonar, dive, serve, keys, tradeoff, check, plan, physio, "
-                        "register, experiment, recording, hud, simulate, doctor"));
+                        "register, experiment, study, recording, hud, simulate, doctor"));
 }
 
 }  // namespace

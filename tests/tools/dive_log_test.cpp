@@ -35,6 +35,7 @@ name = "diver"
 model = ")" + assets + R"(/models/diver.glb"
 human = "d.toml"
 jacket_buttons = "b.csv"
+modem = {}
 position_m = [0, -150, 0]
 pitch_deg = -90
 [[vehicles]]

@@ -16,18 +16,18 @@ namespace {
 
 using scene::PictureDetail;
 
-struct Setting {
+struct KnobSetting {
   std::string knob, value;
   PictureDetail detail;
 };
 
 // Each knob over its range, the others at the level "standard"; then the levels.
-std::vector<Setting> settings_of(bool quick) {
-  std::vector<Setting> out;
+std::vector<KnobSetting> settings_of(bool quick) {
+  std::vector<KnobSetting> out;
   const auto knob = [&](const std::string& name, const std::vector<double>& values, auto turn) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (quick && i > 0 && i + 1 < values.size()) continue;
-      Setting setting{name, fmt::format("{:g}", values[i]), {}};
+      KnobSetting setting{name, fmt::format("{:g}", values[i]), {}};
       turn(setting.detail, values[i]);
       out.push_back(std::move(setting));
     }
@@ -157,7 +157,7 @@ Result<CameraTradeoff> run_camera_tradeoff(const CameraTradeoffOptions& options)
                      camera.width,        camera.height, {}};
   NERITIC_TRY(const auto session, testbed::Session::create(*device, std::move(scene)));
   NERITIC_TRY(const Shown best, show(*session, scene::picture_level("reference").detail, 1));
-  for (const Setting& setting : settings_of(options.quick)) {
+  for (const KnobSetting& setting : settings_of(options.quick)) {
     NERITIC_TRY(const Shown shown, show(*session, setting.detail, options.quick ? 2 : 4));
     out.points.push_back({setting.knob, setting.value, shown.ms, rms_error(shown.color, best.color),
                           perceived_error(shown.color, best.color)});

@@ -32,7 +32,8 @@ class HeadsetPicture : public HeadsetRun {
             .ok());
     return scene::load_scene(scratch / "ball.toml").value();
   }
-  // The middle of the ball's pixels, by the depth that went to the runtime.
+  // The middle of the ball's pixels, by the depth that went to the runtime. What the lenses hide is
+  // at the near plane.
   Place seen(int frame, int view) const {
     const auto depth =
         read_npy(fmt::format("{}/frame_{:04}_view_{}_depth.npy", folder(), frame, view)).value();
@@ -41,7 +42,7 @@ class HeadsetPicture : public HeadsetRun {
     double count = 0.0;
     sum.nearest_m = 1e9;
     for (std::size_t i = 0; i < metres.size(); ++i) {
-      if (!(metres[i] < 100.0)) continue;
+      if (!(metres[i] < 100.0) || metres[i] < 0.06) continue;
       sum.x_px += static_cast<double>(i % depth.shape[1]) + 0.5;
       sum.y_px += static_cast<double>(i / depth.shape[1]) + 0.5;
       sum.nearest_m = std::min(sum.nearest_m, metres[i]);
