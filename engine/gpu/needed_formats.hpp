@@ -25,15 +25,13 @@ inline constexpr VkFormatFeatureFlags kStorageImage = VK_FORMAT_FEATURE_STORAGE_
 inline constexpr VkFormatFeatureFlags kMippedTexture =
     kTexture | VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT | VK_FORMAT_FEATURE_BLIT_SRC_BIT |
     VK_FORMAT_FEATURE_BLIT_DST_BIT;
-// Every image may be read back or filled. (Of a depth format only what is read back is used.)
+// Every image may be read back or filled.
 inline constexpr VkFormatFeatureFlags kCopied =
     VK_FORMAT_FEATURE_TRANSFER_SRC_BIT | VK_FORMAT_FEATURE_TRANSFER_DST_BIT;
 
 inline constexpr std::array kNeededFormats{
     NeededFormat{VK_FORMAT_D32_SFLOAT,
-                 VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT | kTexture |
-                     VK_FORMAT_FEATURE_TRANSFER_SRC_BIT,
-                 "D32_SFLOAT"},
+                 VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT | kTexture | kCopied, "D32_SFLOAT"},
     NeededFormat{VK_FORMAT_R16G16_SNORM, kColorTarget | kTexture | kCopied, "R16G16_SNORM"},
     NeededFormat{VK_FORMAT_R16G16_UINT, kColorTarget | kTexture | kCopied, "R16G16_UINT"},
     NeededFormat{VK_FORMAT_R8G8B8A8_UNORM, kColorTarget | kMippedTexture | kStorageImage | kCopied,

@@ -27,7 +27,7 @@ position_m = [0, -5, 0]
 name = "front"
 position_m = [1.2, -4.7, 2.2]
 look_at_m = [0, -4.7, 0]
-vertical_fov_deg = 50
+fov_deg = 50
 width = 160
 height = 160
 )",
