@@ -58,5 +58,5 @@ void main() {
     x = min(round(x / step_size) * step_size, vec3(camera.saturation));
   }
   if ((kTerms & kCameraWhite) != 0u) x *= camera.white;
-  imageStore(out_image, at, vec4(x, 1.0));
+  imageStore(out_image, at, vec4(min(x, vec3(60000.0)), 1.0));  // as halves hold it
 }

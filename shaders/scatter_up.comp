@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// Adds what one level of the forward scatter's pyramid adds to the picture, with what coarser levels add: in
+// Adds the light of one level of the forward scatter's pyramid, with that of coarser levels, to the picture: in
 // place, from the coarsest to the finest.
 #include "shared/forward_scatter.h"
 #include "shared/lighting.h"

@@ -113,8 +113,9 @@ void main() {
   float stretch = length(ray);
   vec3 direction = ray / stretch;
   float depth = texelFetch(depth_image, at, 0).r;
-  if (depth >= 1.0) {  // hidden from the wearer (hidden.vert): not even the near plane is there
+  if (depth >= 1.0) {  // hidden from the wearer (hidden.vert), or on the near plane itself
     imageStore(hdr_image, at, vec4(0.0, 0.0, 0.0, 1.0));
+    if (light_has(kLightForwardScatter)) imageStore(scattered_image, at, vec4(0.0));
     return;
   }
   bool hit = depth > 0.0;

@@ -30,7 +30,7 @@ int places_over(const BeamPattern& pattern, double width_rad) {
 }  // namespace
 
 double heard_half_rad(double half_rad, const HeadPatterns& patterns) {
-  // Of an aperture much narrower than its pattern the wedge stays cut.
+  // An aperture much narrower than its pattern still cuts the wedge, at so many apertures.
   constexpr double kMostApertures = 9.0;
   if (!patterns.upright()) return half_rad;
   return std::min(std::max(half_rad, patterns.upright()->second_null_rad()),
@@ -41,7 +41,8 @@ double target_cell_rad(const scene::Sonar& sonar, const HeadPatterns& patterns) 
   // A pixel of this share of a target's width has its centre on it wherever it lies: 1 / sqrt(2) of
   // it, and half as much again where pixels and cells do not meet.
   constexpr double kTargetCell = 0.47;
-  // Of all columns and rows; of sonars of one beam, which ping more often to see as much, fewer.
+  // The most samples of all columns and rows. A sonar of one beam pings more often to see as much,
+  // and has fewer.
   constexpr double kMostTargetSamples = 8e6, kMostOfOneBeam = 2e6;
   using Kind = scene::SonarKind;
   if (!sonar.quality_chosen || !(sonar.least_target_m > 0.0)) return 0.0;

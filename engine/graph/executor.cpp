@@ -153,7 +153,8 @@ struct Executor::Impl {
     std::vector<TransientHeaps::Need> needs;
     for (const auto& entry : entries)
       if (in_use(*entry))
-        for (std::size_t c = 0; c < entry->classes.size(); ++c)
+        // Classes of which only culled passes have something come last and have no heap.
+        for (std::size_t c = 0; c < entry->plan.placement.heap_size.size(); ++c)
           TransientHeaps::add(needs, entry->classes[c], entry->plan.placement.heap_size[c]);
     if (heaps.fit(needs)) return {};
     retire_transients();

@@ -33,12 +33,14 @@ std::vector<WorldParticle> snow_around(const scene::Snow& snow, std::uint64_t se
                                        const Vec3& center_m, double time_s, const ViewSet* views,
                                        double share) {
   std::vector<WorldParticle> out;
-  if (!(snow.density_m3 > 0.0)) return out;
+  if (!(snow.density_m3 > 0.0 && share > 0.0)) return out;
   const double cell_m = std::clamp(std::cbrt(kCellMean / snow.density_m3), 0.1, 2.0);
   // A number of slots, each taken by chance: the count has a binomial spread.
   const double mean = snow.density_m3 * cell_m * cell_m * cell_m;
   const auto slots = static_cast<std::uint64_t>(std::ceil(2.0 * mean + 1.0));
   const double taken = mean / static_cast<double>(slots);
+  const double half_m = 0.5 * std::sqrt(3.0) * cell_m;  // of a cell's diagonal
+  const double widest_m = 0.5 * snow.diameter_m * std::exp(2.0 * snow.spread) + 0.02;
   const Vec3 drift_m = snow.drift_m_s * time_s;
   const Vec3 center = center_m - drift_m;  // in the water's own frame
   const auto low = [&](int axis) {
@@ -52,13 +54,15 @@ std::vector<WorldParticle> snow_around(const scene::Snow& snow, std::uint64_t se
       for (std::int64_t x = low(0); x <= high(0); ++x) {
         // Most cells lie beside or behind the views, or out of range.
         const Vec3 middle = cell_m * (Vec3(x, y, z) + 0.5) - center;
-        const double half_m = 0.5 * std::sqrt(3.0) * cell_m;
         if (glm::length(middle) >= snow.range_m + half_m) continue;
-        if (views && !any_view_sees(*views, middle + center_m - views->origin_m(), half_m + 0.05))
+        if (views &&
+            !any_view_sees(*views, middle + center_m - views->origin_m(), half_m + widest_m))
           continue;
         const RandomKey key{seed, kSnowStream ^ mix64(word(y)), mix64(word(x)) ^ (word(z) << 1)};
         for (std::uint64_t i = 0; i < slots; ++i) {
           if (random_uniform(key, 8 * i) >= taken) continue;
+          const auto look = static_cast<std::uint32_t>(random_bits(key, 8 * i + 7));
+          if (!(look * 0x1p-32 < share)) continue;
           const Vec3 place = cell_m * (Vec3(x, y, z) + Vec3(random_uniform(key, 8 * i + 1),
                                                             random_uniform(key, 8 * i + 2),
                                                             random_uniform(key, 8 * i + 3)));
@@ -78,8 +82,7 @@ std::vector<WorldParticle> snow_around(const scene::Snow& snow, std::uint64_t se
                              (1.0 - smooth(0.7 * snow.range_m, snow.range_m, range_m)) *
                              smooth(kNearest_m, kNear_m, range_m);
           particle.kind = shared::kParticleSnow;
-          particle.seed = static_cast<std::uint32_t>(random_bits(key, 8 * i + 7));
-          if (!(particle.seed * 0x1p-32 < share)) continue;
+          particle.seed = look;
           out.push_back(particle);
         }
       }

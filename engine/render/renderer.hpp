@@ -66,8 +66,8 @@ struct DeformedGeometry {
   graph::BufferHandle positions, next_positions;
 };
 
-// What light meets on its way to the surfaces of one view set; empty handles where the scene does
-// not name it.
+// Images of what stands in the light's way to the surfaces of one view set. A handle is empty where
+// the scene does not name the term.
 struct LightImages {
   graph::ImageHandle seen;  // of sun, sky and surroundings (shaders/visibility.comp)
   graph::ImageHandle caustics;
@@ -98,7 +98,7 @@ struct ShadowTarget {
   std::function<void()> drawn;  // called once the maps are recorded; may be empty
 };
 
-// Of visibility_: what shaders compile in.
+// Constants that the shader of visibility_ is compiled with.
 struct VisibilityKnobs {
   std::uint32_t cascades = 0;        // 0: no shadows
   std::uint32_t shadow_samples = 9;  // rings of taps
@@ -169,7 +169,7 @@ class Renderer {
   Result<graph::ImageHandle> declare_resize(graph::FrameGraph& graph, const std::string& prefix,
                                             graph::ImageHandle color, std::uint32_t width,
                                             std::uint32_t height, std::uint32_t layers);
-  // What a lens and an image sensor make of the picture, for as many pixels as the camera has.
+  // Applies a lens and an image sensor to the picture, for as many pixels as the camera has.
   // terms: kCamera... bits.
   Result<graph::ImageHandle> declare_camera(graph::FrameGraph& graph, const std::string& prefix,
                                             graph::ImageHandle hdr,

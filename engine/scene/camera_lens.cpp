@@ -36,20 +36,6 @@ glm::dmat2 brown_slope(const Lens& lens, const glm::dvec2& t) {
           radial + t.y * t.y * slope + 6.0 * p[0] * t.y + 2.0 * p[1] * t.x};
 }
 
-// Whether the lens turns nothing inside out on the way from the axis to that point.
-bool unfolded(const Lens& lens, const glm::dvec2& plane) {
-  constexpr int kSteps = 32;
-  for (int i = 0; i <= kSteps; ++i) {
-    const glm::dvec2 t = plane * (double(i) / kSteps);
-    const bool good =
-        lens.model == LensModel::kFisheye
-            ? fisheye_slope(lens, std::atan(glm::length(t))) > 0.0
-            : glm::determinant(brown_slope(lens, t)) > 0.0 && brown_slope(lens, t)[0][0] > 0.0;
-    if (!good) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 double ImageSensor::saturation() const {
@@ -71,6 +57,19 @@ glm::dvec2 through_lens(const Lens& lens, const glm::dvec2& t) {
   const double radial = 1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[2]));
   return {t.x * radial + 2.0 * p[0] * t.x * t.y + p[1] * (r2 + 2.0 * t.x * t.x),
           t.y * radial + p[0] * (r2 + 2.0 * t.y * t.y) + 2.0 * p[1] * t.x * t.y};
+}
+
+bool unfolded(const Lens& lens, const glm::dvec2& plane) {
+  constexpr int kSteps = 32;
+  for (int i = 0; i <= kSteps; ++i) {
+    const glm::dvec2 t = plane * (double(i) / kSteps);
+    const bool good =
+        lens.model == LensModel::kFisheye
+            ? fisheye_slope(lens, std::atan(glm::length(t))) > 0.0
+            : glm::determinant(brown_slope(lens, t)) > 0.0 && brown_slope(lens, t)[0][0] > 0.0;
+    if (!good) return false;
+  }
+  return true;
 }
 
 glm::dvec2 before_lens(const Lens& lens, const glm::dvec2& image) {

@@ -1,5 +1,5 @@
-// What a camera's picture names beyond a pinhole's: lens, image sensor, white balance, vignette, a
-// linear picture. Each is absent, and unpaid, unless the scene names it. Plain values; any thread.
+// Terms of a camera beyond a pinhole: lens, image sensor, white balance, vignette, a linear
+// picture. Each is absent, and unpaid, unless the scene names it. Plain values; any thread.
 #pragma once
 
 #include <array>
@@ -70,5 +70,7 @@ Result<LensView> lens_view(const Lens& lens, std::uint32_t width, std::uint32_t 
 // Points of the plane at distance 1, x to the right and y down: without a lens and through it.
 glm::dvec2 through_lens(const Lens& lens, const glm::dvec2& plane);
 glm::dvec2 before_lens(const Lens& lens, const glm::dvec2& image);
+// Whether the lens turns nothing inside out on the way from the axis to that point of the plane.
+bool unfolded(const Lens& lens, const glm::dvec2& plane);
 
 }  // namespace neritic::scene

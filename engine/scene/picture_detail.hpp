@@ -9,13 +9,13 @@
 namespace neritic::scene {
 
 struct PictureDetail {
-  double resolution = 1.0;            // of what is shaded: share of the picture's width and height
-  double shadow_size = 1.0;           // texels a side of the sun's maps, times those named
-  std::uint32_t cascades = 4;         // of those named, the nearest and the widest first; at most
-  std::uint32_t shadow_samples = 9;   // rings of taps round a shadow's middle
-  std::uint32_t visibility_step = 2;  // pixels a side to one of the visibility image: 1, 2 or 4
-  double occlusion_samples = 1.0;     // times those named
-  std::uint32_t inscatter_samples = 4;  // of a lamp's beam along a sight
+  double resolution = 1.0;   // share of the picture's sides that is shaded; a camera's own terms: 1
+  double shadow_size = 1.0;  // texels a side of the sun's maps, times those named
+  std::uint32_t cascades = 4;           // of those named, at most: the widest are kept
+  std::uint32_t shadow_samples = 9;     // rings of taps round a shadow's middle
+  std::uint32_t visibility_step = 2;    // pixels a side to one of the visibility image: 1 to 4
+  double occlusion_samples = 1.0;       // times those named
+  std::uint32_t inscatter_samples = 4;  // of a lamp's beam before solid surfaces; blended ones: 4
   std::uint32_t waves = 48;             // of the surface, the longest first; at most
   std::uint32_t scatter_levels = 8;     // octaves of forward scatter, at most
   double particles = 1.0;               // share of the snow named

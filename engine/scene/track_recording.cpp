@@ -51,9 +51,13 @@ class OdometryReader final : public recording::McapVisitor {
     return {};
   }
   std::string names() const {
+    constexpr int kMostNamed = 20;
     std::string all;
-    for (const auto& [id, name] : names_)
-      all += (all.empty() ? "" : ", ") + name.substr(0, name.size() - kOdometry.size());
+    int named = 0;
+    for (const auto& [id, name] : names_) {
+      if (++named > kMostNamed) return all + " ...";
+      all += (all.empty() ? "" : ", ") + printable(name.substr(0, name.size() - kOdometry.size()));
+    }
     return all.empty() ? "none: it has no odometry" : all;
   }
 

@@ -19,6 +19,9 @@
 
 namespace neritic::xr {
 
+// Corners of a view's hidden triangles, at most; runtimes give some hundred.
+inline constexpr std::size_t kMostHiddenCorners = 6000;
+
 struct View {
   Pose head_from_view;
   FrustumTangents tangents;  // asymmetric ones are the rule in a headset

@@ -82,6 +82,7 @@ Status LivePhysics::go_to(const SavedState& saved) {
     if (simulation.observer()) simulation.observer()(simulation.newest());
   });
   if (reader_) reader_->update();
+  ++restored_;
   return {};
 }
 

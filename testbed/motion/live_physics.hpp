@@ -56,6 +56,7 @@ class LivePhysics {
   // used yet are dropped. kBadInput, and no change, if the inbox has other sources under the
   // state's numbers. Lock-step: the loop's clock has to begin anew there.
   Status go_to(const SavedState& saved);
+  std::uint64_t restored() const { return restored_; }  // how often it went so
   // After the last step; newest() and simulation() may be asked then, at any pace.
   void stop() { simulation_->stop(); }
 
@@ -101,7 +102,7 @@ class LivePhysics {
   MotionHistory history_;
   std::vector<SampleSource*> sources_;
   Status listening_;
-  std::uint64_t start_step_ = 0;
+  std::uint64_t start_step_ = 0, restored_ = 0;
   double shown_s_ = 0.0;
 };
 

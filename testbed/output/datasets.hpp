@@ -35,7 +35,7 @@ inline constexpr std::string_view kDatasetNames[] = {
 class Datasets {
  public:
   Datasets() = default;  // none
-  // What is written without a choice: not the formats that say again what others say.
+  // The default: all but the formats that repeat what other files hold.
   static Datasets all() {
     Datasets out;
     out.bits_.set();

@@ -128,8 +128,10 @@ Status PanopticFiles::add(const std::filesystem::path& folder, const std::string
   if (image_count_++ == 0) {
     auto categories = nlohmann::json::array();
     for (const auto& [id, name] : class_names_)
-      categories.push_back(
-          {{"id", id}, {"name", name}, {"supercategory", ""}, {"isthing", id == kStuffClass ? 0 : 1}});
+      categories.push_back({{"id", id},
+                            {"name", name},
+                            {"supercategory", ""},
+                            {"isthing", id == kStuffClass ? 0 : 1}});
     NERITIC_TRY_STATUS(file_.append(
         fmt::format("{{\"categories\": {},\n\"annotations\": [", json_text(categories, -1))));
   }

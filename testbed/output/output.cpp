@@ -31,7 +31,7 @@ nlohmann::json pose_of(const Pose& pose) {
   return {{"position_m", {p.x, p.y, p.z}}, {"rotation_xyzw", {q.x, q.y, q.z, q.w}}};
 }
 
-// What a picture has beyond a pinhole's, as OpenCV and EMVA 1288 name it.
+// Adds the camera's terms beyond a pinhole, as OpenCV and EMVA 1288 name them.
 void add_camera(const ViewImages& view, nlohmann::json& meta) {
   if (view.lens) {
     const auto& k = view.lens->k;

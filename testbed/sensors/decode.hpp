@@ -16,7 +16,8 @@ void decode_normals(std::span<const std::uint32_t> texels, std::span<const float
 void decode_labels(std::span<const std::uint32_t> texels, bool labels, bool instances,
                    ViewImages& out);
 void decode_color(std::span<const std::uint32_t> texels, ViewImages& out);
-// texels: half floats. white: gains that were applied, which a raw picture has not.
+// texels: half floats, so that counts above 2^11 are rounded. white: gains that were applied, which
+// a raw picture has not.
 void decode_linear(std::span<const std::uint64_t> texels, ViewImages& out);
 void decode_raw(std::span<const std::uint64_t> texels, const scene::ImageSensor& sensor,
                 const Vec3f& white, ViewImages& out);

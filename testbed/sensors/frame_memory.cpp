@@ -32,7 +32,7 @@ std::vector<Picture> pictures_of(const scene::Scene& scene, const FrameRequest& 
   return pictures;
 }
 
-// Of the sun's maps of a picture, kept and once more where something moves over them.
+// The sun's maps of a picture are held twice where something moves over the kept ones.
 std::uint64_t sun_map_bytes(const scene::Scene& scene, const Picture& picture) {
   if (!picture.capture.color || !scene.sun || !scene.sun->shadows) return 0;
   const double side = scene.sun->shadows->size * picture.detail.shadow_size;
@@ -49,7 +49,7 @@ std::uint64_t term_bytes(const scene::Scene& scene) {
   return bytes;
 }
 
-// Of what all pictures share: lamps' maps, the caustics' tile.
+// All pictures share the lamps' maps and the caustics' tile.
 std::uint64_t shared_light_bytes(const scene::Scene& scene) {
   std::uint64_t bytes = 0, lamps = 0, side = 0;
   for (const scene::Lamp& lamp : scene.lamps) {

@@ -37,7 +37,7 @@ struct Capture {
 inline constexpr Capture kColorOnGpu =
     Capture{.color = true, .motion = false, .to_host = false}.without_geometry();
 
-// What a camera's picture has beyond a pinhole's.
+// A camera's terms beyond a pinhole.
 struct CameraPicture {
   scene::CameraTerms terms;
   std::optional<scene::LensView> lens;  // with terms.lens: then the views are its pinhole's

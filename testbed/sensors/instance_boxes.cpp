@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
-#include <map>
 #include <utility>
 
 #include "engine/render/frame_state.hpp"
@@ -130,7 +129,8 @@ InstanceBox box_of(const std::vector<Vec3>& model_points, const Mat4& world_from
 
 glm::dvec2 PictureMap::pixel_of(const Vec3& view_m) const {
   glm::dvec2 plane(view_m.x / -view_m.z, -view_m.y / -view_m.z);
-  if (lens) plane = scene::through_lens(*lens, plane);
+  // Far outside its picture a lens's polynomial turns back: the pinhole's place is outside too.
+  if (lens && scene::unfolded(*lens, plane)) plane = scene::through_lens(*lens, plane);
   return {intrinsics.fx * plane.x + intrinsics.cx, intrinsics.fy * plane.y + intrinsics.cy};
 }
 
@@ -163,13 +163,13 @@ std::vector<InstanceBox> instance_boxes(const scene::Scene& scene, const render:
 
 void judge_boxes(std::vector<InstanceBox>& boxes, const PictureMap& map, const ImageF32& depth,
                  const ImageU16& instances) {
-  std::map<std::uint16_t, InstanceBox*> by_instance;
+  std::vector<InstanceBox*> by_instance(1u << 16, nullptr);
   for (InstanceBox& box : boxes) by_instance[box.instance] = &box;
   for (std::uint32_t y = 0; y < instances.height; ++y)
     for (std::uint32_t x = 0; x < instances.width; ++x) {
-      const auto at = by_instance.find(instances.at(x, y));
-      if (at == by_instance.end()) continue;
-      InstanceBox& box = *at->second;
+      InstanceBox* const found = by_instance[instances.at(x, y)];
+      if (!found) continue;
+      InstanceBox& box = *found;
       bool first = box.seen_px++ == 0;
       grow(box.seen, first, {x, y});
       grow(box.seen, first, {x + 1.0, y + 1.0});

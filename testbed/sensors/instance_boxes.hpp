@@ -52,7 +52,8 @@ struct PictureMap {
   glm::dvec2 pixel_of(const Vec3& view_m) const;  // of a point ahead
 };
 
-// Of everything that has a class and can be in the picture. Without what pixels tell.
+// Boxes of everything that has a class and can be in the picture. The fields that only pixels tell
+// stay empty.
 std::vector<InstanceBox> instance_boxes(const scene::Scene& scene, const render::FrameState& state,
                                         const Pose& world_from_view, const PictureMap& map);
 // Adds what pixels tell, and drops the boxes of which no pixel is seen.

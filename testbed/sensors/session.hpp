@@ -64,7 +64,7 @@ class Session {
   explicit Session(gpu::Device& device);
   Result<std::unique_ptr<SensorFrame>> declare_sensors(graph::FrameGraph& graph,
                                                        const FrameRequest& request);
-  // What the camera's picture has beyond a pinhole's; nothing where it names nothing.
+  // The camera's terms beyond a pinhole; nothing where it names none.
   std::optional<CameraPicture> picture_of(std::size_t camera, const Capture& capture);
   Status run_to_end(graph::FrameGraph& graph, SensorFrame& frame);
   gpu::Device& device_;

@@ -26,7 +26,7 @@ std::uint64_t content_of(std::uint64_t still, const render::ViewSet& set) {
 Result<graph::ImageHandle> SunMaps::declare(const FrameParts& frame, const std::string& prefix,
                                             ViewsWork& work) {
   NERITIC_CHECK(!work.cascades.empty(), "{}no cascades", prefix);
-  Kept& kept = kept_[prefix];
+  Kept& kept = kept_[work.owner];
   const std::uint32_t size = work.cascades.front().width;
   const auto layers = static_cast<std::uint32_t>(work.cascades.size());
   if (!kept.image || kept.image.desc().width != size || kept.image.desc().layers != layers) {
@@ -86,14 +86,6 @@ Result<graph::ImageHandle> SunMaps::declare(const FrameParts& frame, const std::
       {.image =
            render::Renderer::declare_shadow_copy(frame.graph, name + " copy", maps, size, layers),
        .over = true});
-}
-
-std::uint64_t SunMaps::bytes() const {
-  std::uint64_t bytes = 0;
-  for (const auto& [name, kept] : kept_)
-    bytes += std::uint64_t{4} * kept.image.desc().width * kept.image.desc().height *
-             kept.image.desc().layers;
-  return bytes;
 }
 
 }  // namespace neritic::testbed

@@ -21,7 +21,6 @@ class SunMaps {
   // The maps that a view set's shading reads, of work.cascades. prefix: of the view set's passes.
   Result<graph::ImageHandle> declare(const FrameParts& frame, const std::string& prefix,
                                      ViewsWork& work);
-  std::uint64_t bytes() const;  // of the device's memory
 
  private:
   struct Kept {

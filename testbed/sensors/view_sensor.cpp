@@ -1,26 +1,15 @@
 #include "testbed/sensors/view_sensor.hpp"
 
 #include <cmath>
-#include <future>
 
 #include "engine/core/check.hpp"
 #include "engine/core/refusal.hpp"
 #include "engine/render/lighting.hpp"
 #include "engine/render/sea_waves.hpp"
-#include "testbed/sensors/decode.hpp"
-#include "testbed/sensors/lens_arrays.hpp"
 #include "testbed/sensors/session.hpp"
 
 namespace neritic::testbed {
 namespace {
-
-template <class T>
-std::span<const T> layer_of(const gpu::Buffer& buffer, std::size_t layer, std::size_t elements) {
-  return std::span<const T>(buffer.mapped<T>()).subspan(layer * elements, elements);
-}
-
-// With fewer pixels a thread costs more than it saves (0.1 ms on the build machine).
-constexpr std::size_t kWorthAThread = 1 << 16;
 
 Status check_size(const gpu::Device& device, const std::string& what,
                   const render::ViewSet& views) {
@@ -80,7 +69,7 @@ std::uint32_t visibility_step(const scene::Scene& scene, const scene::PictureDet
   return full ? 1 : detail.visibility_step;
 }
 
-// What stands in the light's way; sets the terms of what is there.
+// Declares the passes that find what stands in the light's way, and sets the terms that are there.
 Result<render::LightImages> declare_light(const FrameParts& frame, const std::string& prefix,
                                           const render::GBuffer& g, const render::ViewSet& views,
                                           const scene::PictureDetail& detail, ViewsWork& work,
@@ -128,7 +117,7 @@ struct CameraHdr {
   Vec3f white{1.0f};
 };
 
-// What lens and sensor make of the picture; as it was where none is named.
+// Applies lens and sensor to the picture, and leaves it as it is where none is named.
 Result<CameraHdr> declare_camera(const FrameParts& frame, const std::string& prefix,
                                  graph::ImageHandle hdr, std::uint32_t layers,
                                  const CameraPicture& picture, const shared::Lighting& lighting) {
@@ -258,83 +247,6 @@ render::GBufferParts parts_of(const Capture& capture) {
   return {.normal = capture.normals, .label = capture.labels || capture.instances};
 }
 
-namespace {
-
-PictureMap picture_map(const ViewImages& eye) {
-  return {eye.intrinsics, eye.lens, eye.near_m, eye.width, eye.height};
-}
-
-// The linear picture and the raw one, of a camera that names them.
-void decode_unencoded(const ViewsWork& work, std::size_t i, std::size_t pixels, ViewImages& eye) {
-  const auto texels = layer_of<std::uint64_t>(*work.linear, i, pixels);
-  const scene::CameraTerms& terms = work.camera->terms;
-  if (terms.linear) decode_linear(texels, eye);
-  if (terms.sensor && terms.sensor->bayer != scene::Bayer::kNone)
-    decode_raw(texels, *terms.sensor, work.white, eye);
-}
-
-ViewImages decode_view(const ViewsWork& work, std::size_t i) {
-  const render::ViewDesc& view = work.views.views[i];
-  const bool lens = work.camera && work.camera->lens;
-  ViewImages eye;
-  eye.world_from_view = view.world_from_view;
-  eye.intrinsics = intrinsics_of(view.tangents, work.views.width, work.views.height);
-  eye.near_m = view.near_m;
-  eye.width = work.views.width;
-  eye.height = work.views.height;
-  // Arrays as the pinhole has them; the picture as the camera delivers it.
-  ViewImages pinhole = eye;
-  if (work.camera) {
-    eye.sensor = work.camera->terms.sensor;
-    eye.width = work.camera->width;
-    eye.height = work.camera->height;
-  }
-  if (lens) {
-    eye.lens = work.camera->terms.lens;
-    eye.intrinsics = work.camera->lens->lens;
-  }
-  ViewImages& arrays = lens ? pinhole : eye;
-  const std::size_t pixels = std::size_t{arrays.width} * arrays.height;
-  const std::size_t picture_pixels = std::size_t{eye.width} * eye.height;
-  // Two halves of about the same bytes, which share nothing but the sizes.
-  const std::span<const float> depth =
-      work.depth ? layer_of<float>(*work.depth, i, pixels) : std::span<const float>();
-  const auto shape = [&] {
-    if (work.capture.depth) decode_depth(depth, arrays);
-    if (work.normal)
-      decode_normals(layer_of<std::uint32_t>(*work.normal, i, pixels), depth, arrays);
-  };
-  const auto look = [&] {
-    if (work.label)
-      decode_labels(layer_of<std::uint32_t>(*work.label, i, pixels), work.capture.labels,
-                    work.capture.instances, arrays);
-    if (work.color) decode_color(layer_of<std::uint32_t>(*work.color, i, picture_pixels), eye);
-    if (work.linear) decode_unencoded(work, i, picture_pixels, eye);
-    if (work.motion)
-      decode_motion(
-          layer_of<float>(*work.motion, i, pixels * 2), depth,
-          glm::conjugate(view.next_world_from_view.rotation) * view.world_from_view.rotation,
-          arrays);
-  };
-  if (pixels < kWorthAThread || !(work.depth && (work.color || work.motion))) {
-    shape();
-    look();
-  } else {
-    auto other = std::async(std::launch::async, look);
-    shape();
-    other.get();
-  }
-  if (lens && work.camera->map)
-    arrays_through_lens(pinhole, *eye.lens, *work.camera->lens, *work.camera->map, eye);
-  if (!work.boxes.empty()) {
-    eye.boxes = work.boxes[i];
-    judge_boxes(eye.boxes, picture_map(eye), eye.depth, eye.instances);
-  }
-  return eye;
-}
-
-}  // namespace
-
 Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::string& label,
                                          const ViewsRequest& request, ViewsWork& work) {
   const Capture& capture = request.capture;
@@ -343,6 +255,7 @@ Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::str
   NERITIC_TRY_STATUS(check_size(frame.device, label, request.views));
   work.views = request.views;
   work.capture = capture;
+  work.owner = label;
   work.camera = request.camera;
   if (capture.boxes && capture.to_host)
     for (const render::ViewDesc& view : work.views.views) {
@@ -430,12 +343,6 @@ Status bring_geometry(const FrameParts& frame, const std::string& prefix, const 
     NERITIC_TRY(work.label, bring("label", g.label, render::kLabelFormat));
   }
   return {};
-}
-
-std::vector<ViewImages> decode_views(const ViewsWork& work) {
-  std::vector<ViewImages> views;
-  for (std::size_t i = 0; i < work.views.views.size(); ++i) views.push_back(decode_view(work, i));
-  return views;
 }
 
 std::optional<scene::LensView> lens_view_of(const scene::Camera& camera) {

@@ -48,6 +48,7 @@ struct FrameParts {
 struct ViewsWork {
   render::ViewSet views;
   Capture capture;
+  std::string owner;  // unlike a view's name no two sets of a frame share it
   render::DrawList draws;
   // Where capture asks for arrays and shading has fewer pixels: the shading's own.
   render::ViewSet shaded_views;

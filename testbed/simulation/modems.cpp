@@ -61,6 +61,11 @@ std::uint64_t said_number(std::uint64_t modem) {
 }  // namespace
 
 ModemReading modem_reading(const sonar::ModemReport& report) {
+  // Samples do not know sonar/: both lists have the same order.
+  static_assert(static_cast<int>(ModemEvent::kWasSending) ==
+                static_cast<int>(sonar::ModemEvent::kWasSending));
+  static_assert(static_cast<int>(ModemKind::kAnswer) ==
+                static_cast<int>(sonar::ModemKind::kAnswer));
   const sonar::ModemMessage& message = report.message;
   ModemReading reading{.event = static_cast<ModemEvent>(report.event),
                        .kind = static_cast<ModemKind>(message.kind),
@@ -100,7 +105,8 @@ Result<Modems> Modems::create(const scene::Scene& scene, const Movers& movers) {
     return bad_input("{}: {} modems; accepted: up to {}", scene.path, out.all_.size(),
                      sonar::kMostModems);
   NERITIC_TRY(out.water_, water_of(scene.acoustics.value_or(scene::Acoustics{})));
-  for (PhysicsModem& modem : out.all_) {
+  for (std::size_t i = 0; i < out.all_.size(); ++i) {
+    PhysicsModem& modem = out.all_[i];
     if (!modem.ranging) continue;
     const auto target = std::ranges::find_if(out.all_, [&](const PhysicsModem& other) {
       return other.name == modem.ranging->target && &other != &modem;
@@ -114,6 +120,12 @@ Result<Modems> Modems::create(const scene::Scene& scene, const Movers& movers) {
                        names.empty() ? "another object with a modem: there is none" : names);
     }
     modem.target = static_cast<std::size_t>(target - out.all_.begin());
+    // An answer leaves when the request is whole: a shorter turnaround would lengthen the range.
+    const double request_s = sonar::modem_duration_s(out.settings_[i], kRangingBytes);
+    if (target->turnaround_s < request_s)
+      return bad_input(
+          "{}: {}: modem.turnaround_s: found {:g}; accepted: {:g} or more, {}'s request",
+          scene.path, target->name, target->turnaround_s, request_s, modem.name);
   }
   return out;
 }
@@ -167,10 +179,10 @@ void Modems::send_asked(const Call& call, std::size_t index) const {
   if (asked.asked - tasks.sent > kMostAsked) tasks.sent = asked.asked - kMostAsked;
   for (; tasks.sent < asked.asked; ++tasks.sent) {
     const bool kept = asked.asked - tasks.sent <= ModemInputs::kQueued;
-    const ModemSend& said = asked.queue[tasks.sent % ModemInputs::kQueued];
+    const ModemSend said = kept ? asked.queue[tasks.sent % ModemInputs::kQueued] : ModemSend{};
     sonar::ModemMessage message;
     message.to = said.to == 0 ? sonar::kToAll : said.to - 1;
-    message.bytes = kept && said.to <= all_.size() ? said.bytes : 0;  // of none: refused
+    message.bytes = said.to <= all_.size() ? said.bytes : 0;  // to no modem: refused
     for (std::size_t i = 0; i < said.words.size(); ++i)
       message.words[i / 2] |= std::uint64_t{said.words[i]} << (32 * (i % 2));
     say(call, index, message, call.from_s);

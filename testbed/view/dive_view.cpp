@@ -6,6 +6,8 @@
 #include "testbed/instruments/instrument_data.hpp"
 
 namespace neritic::testbed {
+
+static_assert(xr::kMostHiddenCorners <= render::kMostHidden);
 namespace {
 
 constexpr double kSpeeds[] = {0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0};

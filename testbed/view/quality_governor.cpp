@@ -51,7 +51,7 @@ const std::array<scene::PictureDetail, kLightLevels> kLight{{{},
                                                               .scatter_levels = 2,
                                                               .particles = 0.25}}};
 
-// The cost of a level of light beside the best (measured in software: wreck, 320 x 180).
+// A guess of a level's cost beside the best: it steers how far a step goes, and misses correct it.
 constexpr std::array<double, kLightLevels> kLightCost{1.0, 0.75, 0.6, 0.5};
 
 constexpr double kMissed = 1.08;  // of the budget: slower is a miss

@@ -21,8 +21,8 @@ struct Quality {
 
 inline constexpr std::uint32_t kLightLevels = 4;
 
-// Best first: some of the view's resolution, then size and number of the sun's shadow maps, ambient
-// occlusion, waves and forward scatter, then the sonars' rates, and so on in turn.
+// Best first: some of the view's resolution, then the knobs of light and water, then the sonars'
+// rates, and so on in turn.
 std::span<const Quality> quality_rungs();
 
 // A camera's knobs at a level of light: none finer than the camera has it.

@@ -1,5 +1,6 @@
 #include "testbed/world/dive_link.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "testbed/motion/live_physics.hpp"
@@ -15,7 +16,8 @@ Status DiveLink::accept(const sim::Snapshot<PhysicsState>& step, std::span<const
   const TimeNs shift_ns = std::llround(step.time_s * 1e9) - step.due_ns;
   const std::lock_guard lock(mutex_);
   if (waiting_.size() + outputs.size() > kMostWaiting)
-    waiting_.erase(waiting_.begin(), waiting_.begin() + kMostWaiting / 2);
+    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                                            waiting_.size(), kMostWaiting / 2)));
   for (Sample sample : outputs) {
     sample.header.captured_ns += shift_ns;
     sample.header.arrived_ns += shift_ns;

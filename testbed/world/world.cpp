@@ -182,8 +182,16 @@ Result<std::size_t> World::agent(const std::string& name) const {
 }
 
 void World::receive(std::span<const Sample> outputs) {
-  parts_->receiver->receive(outputs);
-  parts_->receiver->deliver(time_ns());
+  Parts& parts = *parts_;
+  if (parts.restored != parts.physics->restored()) {
+    // By the display's keys: who commands what, and all that is on its way, belong to another time.
+    parts.restored = parts.physics->restored();
+    parts.receiver->forget();
+    parts.holders.clear();
+  } else {
+    parts.receiver->receive(outputs);
+  }
+  parts.receiver->deliver(time_ns());
 }
 
 Result<Instruments> World::instruments(const std::string& name) const {
@@ -308,11 +316,10 @@ std::vector<std::byte> World::save() const {
   const StateFormat format = parts_->world().state_format();
   if (parts_->owned_physics)
     return encode_state(format, saved_state(parts_->physics->simulation(), format));
-  std::vector<std::byte> out;
-  parts_->physics->between_steps([&](PhysicsSimulation& simulation) {
-    out = encode_state(format, saved_state(simulation, format));
-  });
-  return out;
+  std::optional<SavedState> saved;
+  parts_->physics->between_steps(
+      [&](PhysicsSimulation& simulation) { saved = saved_state(simulation, format); });
+  return encode_state(format, *saved);
 }
 
 Status World::restore(std::span<const std::byte> bytes) {

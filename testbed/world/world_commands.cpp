@@ -103,8 +103,9 @@ Result<Said> object_command(const std::string& where, const std::string& kind,
 // A message of bytes.
 Result<ModemSend> message_of(const std::string& where, std::uint64_t modems,
                              std::span<const double> values) {
-  NERITIC_TRY_STATUS(check_count(where, std::min<std::size_t>(values.size(), kModemBytes + 2), 2,
-                                 kModemBytes + 1));
+  if (values.size() < 2 || values.size() > kModemBytes + 1)
+    return refusal(where, fmt::format("{} numbers", values.size()),
+                   fmt::format("the number of a modem and 1 to {} bytes", kModemBytes));
   const auto whole = [](double value, double most) {
     return value >= 0.0 && value <= most && value == std::floor(value);
   };

@@ -68,6 +68,7 @@ struct World::Parts {
   const scene::Scene* motions = &scene;  // whose tracks move objects; another one's if attached
   std::unique_ptr<LivePhysics> owned_physics;  // absent: attached
   LivePhysics* physics = nullptr;
+  std::uint64_t restored = 0;  // of an attached physics, as it was last seen
   std::vector<AgentInfo> agents;
   std::vector<StreamInfo> streams;
   std::size_t first_image = 0;  // into streams

@@ -145,6 +145,24 @@ TEST_F(ExecutorTest, CulledPassesAreNotRecorded) {
   EXPECT_LT(executor_->transient_bytes(), 1u << 20);
 }
 
+TEST_F(ExecutorTest, AGraphOfWhichNothingIsWantedRunsWithoutMemory) {
+  FrameGraph graph;
+  struct Nothing {
+    ImageHandle image;
+  };
+  graph.add_pass<Nothing>(
+      "unwanted",
+      [](PassBuilder& builder, Nothing& data) {
+        data.image =
+            builder.write(builder.create_image("waste", {VK_FORMAT_R8G8B8A8_UNORM, 16, 16, 1}),
+                          Access::kStorageWriteCompute);
+      },
+      [](const Nothing&, PassContext&) {});
+  const Plan* plan = run(std::move(graph));
+  EXPECT_TRUE(plan->order.empty());
+  EXPECT_EQ(executor_->transient_bytes(), 0u);
+}
+
 TEST_F(ExecutorTest, WrongGraphIsAnErrorThatNamesPassAndResource) {
   FrameGraph graph;
   const BufferHandle input = graph.import_buffer("input", input_);

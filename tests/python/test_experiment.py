@@ -5,6 +5,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from types import SimpleNamespace
 
 try:
     import numpy as np
@@ -21,6 +22,7 @@ import detector
 import intervals
 import looking
 import questionnaires
+from human_state import HumanState
 from scenario import Failed, Refused
 
 try:
@@ -124,8 +126,37 @@ class Study(unittest.TestCase):
             self.assertNotIn("P01", self.read("scores.csv"))
             self.assertIn("P02,b,1,45.8333", self.read("scores.csv"))
             self.assertEqual(self.study("run", "P01")[0], 2)
+            # A withdrawal that was cut short after its first step is ended by the same command.
+            for left in ("participants/P01/markers.jsonl", "scores.csv.17.tmp"):
+                os.makedirs(os.path.dirname(os.path.join(self.folder, left)), exist_ok=True)
+                self.write(os.path.join(self.folder, left), "P01,a,1\n")
+            self.assertEqual(self.study("withdraw", "P01", "--yes")[0], 0)
+            self.assertEqual(sorted(os.listdir(self.folder)), ["participants", "scores.csv", "study.json"])
+            self.assertEqual(os.listdir(os.path.join(self.folder, "participants")), ["P02"])
             # The next one takes the order of the one who left, under a new name.
             self.assertIn("P03. Blocks: a, b", self.study("enrol", answers="yes\n")[1])
+
+    def test_blocks_write_into_the_participants_folder_alone(self):
+        with tempfile.TemporaryDirectory() as self.scratch:
+            self.folder = os.path.join(self.scratch, "study")
+            begin = ("begin", "--plan", os.path.join(self.scratch, "plan.toml"))
+            for command in ('["dive", "--record", "out.mcap"]', '["dive", "--log=log.csv"]', '["dive", "--save"]'):
+                self.write("plan.toml", self.PLAN + f"command = {command}\n")
+                status, text = self.study(*begin)
+                self.assertEqual((status, text.count("\n")), (2, 1), text)
+                self.assertIn("the participant's own", text)
+            self.write("plan.toml", self.PLAN.replace('name = "b"', 'name = "after"'))
+            self.assertEqual(self.study(*begin)[0], 2)
+            self.write("plan.toml", self.PLAN + 'command = ["dive", "--record", "{record}.mcap", "--log={folder}/log.csv"]\n')
+            self.assertEqual(self.study(*begin)[0], 0)
+
+    def test_an_enrolment_that_was_cut_short_gives_its_pseudonym_to_nobody(self):
+        with tempfile.TemporaryDirectory() as self.scratch:
+            self.folder = os.path.join(self.scratch, "study")
+            self.write("plan.toml", self.PLAN)
+            self.assertEqual(self.study("begin", "--plan", os.path.join(self.scratch, "plan.toml"))[0], 0)
+            os.makedirs(os.path.join(self.folder, "participants", "P01"))
+            self.assertIn("P02. Blocks", self.study("enrol", answers="yes\n")[1])
 
     def test_bad_words_are_refused_in_one_line(self):
         with tempfile.TemporaryDirectory() as self.scratch:
@@ -133,6 +164,35 @@ class Study(unittest.TestCase):
             for words in (("beginn",), ("run",), ("run", "P01"), ("begin", "--plan", "none.toml"), ("ask", "P01", "mood")):
                 status, text = self.study(*words)
                 self.assertEqual((status, text.count("\n")), (2, 1), text)
+
+
+class Diver(unittest.TestCase):
+    """human_state.py on samples of its own making."""
+
+    class World:
+        agents = {"ann": None, "rov": None}
+
+        def truth(self, name):
+            return SimpleNamespace(position=(0.0, 10.0, -5.0))
+
+    class Seen(dict):
+        time = 20.0
+
+    def seen(self, stamp, gaze=(0.0, 1.0, 0.0)):
+        motion = SimpleNamespace(stamp=stamp, breath_bpm=12.0, heart_bpm=math.nan, tank_pa=150e5, gaze=np.array(gaze),
+                                 position=(0.0, 0.0, -5.0))
+        return self.Seen({"ann/motion": motion})
+
+    def test_each_value_has_its_quality(self):
+        human = HumanState(self.World(), "ann")
+        state = human.of(self.seen(19.9))
+        self.assertEqual(state["breath_bpm"][:2], (12.0, "good"))
+        self.assertEqual(state["gas_bar"].value, 150.0)
+        self.assertEqual(state["gaze_target"][:2], ("rov", "good"))
+        for name in ("heart_bpm", "depth_m", "rmssd_ms"):
+            self.assertEqual(state[name].quality, "missing", name)
+        self.assertEqual(human.of(self.seen(19.0))["breath_bpm"].quality, "stale")
+        self.assertIsNone(human.of(self.seen(19.9, gaze=(1.0, 0.0, 0.0)))["gaze_target"].value)
 
 
 class Power(unittest.TestCase):

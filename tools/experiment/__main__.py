@@ -35,9 +35,8 @@ import summary
 
 KINDS = {"imaging": imaging, "profiling": profiling, "echo_sounder": echo_sounder, "shark": shark,
          "task": task.Task, "detector": detector}
-# name: the file's name, where crops come from, their channels, the network's width
-TRAINED = {"train_camera": ("camera", crops, 3, 16), "train_camera_small": ("camera_small", crops, 3, 8),
-           "train_sonar": ("sonar", sonar_crops, 1, 16)}
+# name: the file's name, where crops come from, their channels
+TRAINED = {"train_camera": ("camera", crops, 3), "train_sonar": ("sonar", sonar_crops, 1)}
 
 
 def one(path, asked, out):
@@ -65,9 +64,9 @@ def do(plan, asked, out):
 
 
 def train(asked):
-    name, maker, channels, width = TRAINED[asked.name]
+    name, maker, channels = TRAINED[asked.name]
     folder(asked.out)
-    share = training.train(name, maker.Maker, maker.CLASSES, channels, width, asked.program, asked.runs, asked.seed or 1, asked.workers,
+    share = training.train(name, maker.Maker, maker.CLASSES, channels, asked.program, asked.runs, 1 if asked.seed is None else asked.seed, asked.workers,
                            asked.out, asked.quiet)
     if not asked.quiet:
         print(f"{asked.out}/{name}.onnx: {100 * share:.1f} % of the crops kept aside")
@@ -129,7 +128,7 @@ def main():
         print(f"neritic: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        print(f"neritic: experiment: interrupted; finished runs are kept, --resume goes on", file=sys.stderr)
+        print("neritic: experiment: interrupted; finished runs are kept, --resume goes on", file=sys.stderr)
         return 130
 
 

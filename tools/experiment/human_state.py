@@ -5,7 +5,8 @@
     state = human.of(world.tick(12))       # {"breath_bpm": Value(13.2, "good", age_s=0.05), ...}
 
 Names and units: gaze_target (an agent's name or None), gaze_off_deg, breath_bpm, heart_bpm, rmssd_ms, depth_m, ascent_m_min,
-gas_bar. Qualities: good; stale (older than STALE_S); poor (known, but not to be relied on); missing (never came, or NaN).
+gas_bar. Qualities: good; stale (older than STALE_S); poor (known, but not to be relied on, as rmssd_ms always is); missing
+(never came, or NaN).
 """
 import collections
 import math
@@ -13,7 +14,7 @@ import math
 import numpy as np
 
 Value = collections.namedtuple("Value", "value quality age_s")
-STALE_S = {"diver/motion": 0.5, "diver/computer": 3.0, "diver/heart": 10.0}
+STALE_S = {"motion": 0.5, "computer": 3.0, "heart": 10.0}  # by stream of the diver
 GAZE_DEG = 5.0  # farther off the line of sight nothing is looked at
 BEATS = 20  # successive intervals of the heart's variability
 
@@ -24,13 +25,13 @@ class HumanState:
 
     def of(self, seen):
         motion, age = self._newest(seen, "motion")
-        out = {name: _judged(getattr(motion, name, math.nan), age, STALE_S["diver/motion"]) for name in ("breath_bpm", "heart_bpm")}
+        out = {name: _judged(getattr(motion, name, math.nan), age, STALE_S["motion"]) for name in ("breath_bpm", "heart_bpm")}
         tank = getattr(motion, "tank_pa", math.nan)
-        out["gas_bar"] = _judged(tank / 1e5, age, STALE_S["diver/motion"])
+        out["gas_bar"] = _judged(tank / 1e5, age, STALE_S["motion"])
         out["gaze_target"], out["gaze_off_deg"] = self._gaze(motion, age)
         computer, age = self._newest(seen, "computer")
         for name, field in (("depth_m", "depth_m"), ("ascent_m_min", "ascent_m_min")):
-            out[name] = _judged(getattr(computer, field, math.nan), age, STALE_S["diver/computer"])
+            out[name] = _judged(getattr(computer, field, math.nan), age, STALE_S["computer"])
         out["rmssd_ms"] = self._rmssd(seen)
         return out
 
@@ -39,7 +40,7 @@ class HumanState:
         return (one, math.inf) if one is None else (one, seen.time - one.stamp)
 
     def _gaze(self, motion, age):
-        """The agent nearest to the line of sight, from the head on; poor where two are as near."""
+        """The agent nearest to the line of sight from the diver's place; poor where two are as near."""
         if motion is None or not np.isfinite(motion.gaze).all() or np.linalg.norm(motion.gaze) < 1e-6:
             return Value(None, "missing", math.inf), Value(math.nan, "missing", math.inf)
         way, eye = np.array(motion.gaze) / np.linalg.norm(motion.gaze), np.array(motion.position)
@@ -53,9 +54,9 @@ class HumanState:
                 off.append((math.degrees(math.acos(max(-1.0, min(1.0, float(way @ line) / far)))), name))
         off.sort()
         if not off or off[0][0] > GAZE_DEG:
-            return _judged_as(None, age), _judged(off[0][0] if off else math.nan, age, STALE_S["diver/motion"])
+            return _judged_as(None, age), _judged(off[0][0] if off else math.nan, age, STALE_S["motion"])
         doubt = len(off) > 1 and off[1][0] - off[0][0] < 1.0
-        return _judged_as(off[0][1], age, doubt), _judged(off[0][0], age, STALE_S["diver/motion"])
+        return _judged_as(off[0][1], age, doubt), _judged(off[0][0], age, STALE_S["motion"])
 
     def _rmssd(self, seen):
         """Root mean square of successive differences of the intervals (Task Force 1996) that a strap's rates stand for: a
@@ -69,7 +70,7 @@ class HumanState:
         if len(self.intervals) < 5:
             return Value(math.nan, "missing", age)
         value = float(np.sqrt(np.mean(np.diff(self.intervals) ** 2)))
-        return Value(value, "stale" if age > STALE_S["diver/heart"] else "poor", age)
+        return Value(value, "stale" if age > STALE_S["heart"] else "poor", age)
 
 
 def _judged(value, age, stale_s):
@@ -80,4 +81,4 @@ def _judged(value, age, stale_s):
 
 
 def _judged_as(name, age, doubt=False):
-    return Value(name, "stale" if age > STALE_S["diver/motion"] else "poor" if doubt else "good", age)
+    return Value(name, "stale" if age > STALE_S["motion"] else "poor" if doubt else "good", age)

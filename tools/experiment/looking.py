@@ -1,7 +1,7 @@
 """A detector read from an ONNX file by OpenCV, and a thread of its own that looks at pictures with it.
 
 Beside NAME.onnx lies NAME.json: {"kind": "classifier", "yolo5", "yolo8" or "ssd", "classes": [...], "side": 64,
-"normalise": "crop" or "none", "channels": 3}. A classifier gives a share to each class of a whole crop. YOLO's raw output and
+"normalise": "crop" (the default) or "none"}. A classifier gives a share to each class of a whole crop. YOLO's raw output and
 SSD's rows (image, class, confidence, box) give boxes; overlapping ones are thinned. Pictures are [row, column(, channel)]
 as the cameras and sonars give them, RGB.
 """
@@ -49,10 +49,12 @@ class Detector:
                 self.about = json.load(file)
             self.kind, self.classes, self.side = self.about["kind"], list(self.about["classes"]), int(self.about["side"])
         except (ValueError, KeyError, TypeError, OSError) as error:
-            raise Refused(f"{about}: found no description ({error!r}); accepted: kind, classes, side, normalise, channels") from None
+            raise Refused(f"{about}: found no description ({error!r}); accepted: kind, classes, side, normalise") from None
         if self.kind not in KINDS or not 8 <= self.side <= 4096 or not self.classes:
             raise Refused(f"{about}: found kind {self.kind!r}, side {self.side}, {len(self.classes)} classes; accepted: "
                           f"{', '.join(KINDS)}; 8 to 4096; one or more")
+        if self.about.get("normalise", "crop") not in ("crop", "none"):
+            raise Refused(f"{about}: found normalise {self.about['normalise']!r}; accepted: crop, none")
         try:
             self._net = cv2.dnn.readNetFromONNX(path)
             self._net.setPreferableBackend(cv2.dnn.DNN_BACKEND_OPENCV)
@@ -155,6 +157,13 @@ class Looker:
             if isinstance(one, Exception):
                 raise one
         return out
+
+    def answer(self, wait_s):
+        """The newest answer; waits for it."""
+        told = self.answers(wait_s)
+        if not told:
+            raise Failed(f"detector: no answer within {wait_s:g} s")
+        return told[-1]
 
     def close(self):
         self._next.put(None)

@@ -1,5 +1,5 @@
 """Questionnaires of studies with people: their items, scales and scores. Item texts are short labels of our own for each
-published item, since some publishers license the wording; a plan may give a laboratory's own texts.
+published item, since some publishers license the wording.
 
 NASA-TLX: six scales of 21 ticks, 0 to 100 in steps of 5 (Hart and Staveland 1988); raw TLX is their mean (Hart 2006).
 SSQ: 16 symptoms, 0 to 3; nausea, oculomotor, disorientation, total by Kennedy et al. 1993, table 5.

@@ -56,7 +56,7 @@ def read(path):
         raise Refused(f"{path}: found no TOML: {error}") from None
 
 
-def _check_keys(where, table, accepted):
+def check_keys(where, table, accepted):
     if not isinstance(table, dict):
         raise Refused(f"{where}: found {_words(table)}; accepted: a table")
     for key in table:
@@ -112,6 +112,11 @@ class Run:
         return json.dumps([self.condition, self.seed], sort_keys=True)
 
 
+def _hash_of(path):
+    with open(path, "rb") as file:
+        return hashlib.sha256(file.read()).hexdigest()
+
+
 def draw(seed, key, low, high):
     """Uniform in [low, high): by a counter, SHA-256 of the seed and the key."""
     digest = hashlib.sha256(f"{seed}:{key}".encode()).digest()
@@ -128,8 +133,8 @@ class Scenario:
         self.data = data = copy.deepcopy(read(path))
         head = data.get("experiment", {})
         own = ["task", "stages", "measures"] if isinstance(head, dict) and head.get("kind") == "task" else []
-        _check_keys(path, data, ["experiment", "settings", "vary", "factors", "criteria", *own])
-        _check_keys(f"{path}: experiment", head, ["title", "about", "kind", "runs", "seed"])
+        check_keys(path, data, ["experiment", "settings", "vary", "factors", "criteria", *own])
+        check_keys(f"{path}: experiment", head, ["title", "about", "kind", "runs", "seed"])
         kind = head.get("kind")
         _word_of(f"{path}: experiment.kind", kind, kinds)
         self.kind_name = kind
@@ -142,7 +147,7 @@ class Scenario:
         known = self.kind.SETTINGS
         self.settings = {k: s.default for k, s in known.items()}
         for table in ("settings", "vary", "factors"):
-            _check_keys(f"{path}: {table}", data.get(table, {}), list(known))
+            check_keys(f"{path}: {table}", data.get(table, {}), list(known))
         for key, value in data.get("settings", {}).items():
             self.settings[key] = known[key].check(f"{path}: settings.{key}", value)
         self.vary = {k: self._range(k, v) for k, v in data.get("vary", {}).items()}
@@ -205,7 +210,7 @@ class Scenario:
 
     def _criterion(self, index, table):
         where = f"{self.path}: criteria[{index}]"
-        _check_keys(where, table, ["measure", "statistic", "at_most", "at_least", "where", "less"])
+        check_keys(where, table, ["measure", "statistic", "at_most", "at_least", "where", "less"])
         _word_of(f"{where}.measure", table.get("measure"), self.kind.MEASURES)
         _word_of(f"{where}.statistic", table.get("statistic", "median"), STATISTICS)
         if ("at_most" in table) + ("at_least" in table) < 1:
@@ -214,7 +219,7 @@ class Scenario:
             if key in table:
                 _number(f"{where}.{key}", table[key], -1e300, 1e300)
         for part in ("where", "less"):
-            _check_keys(f"{where}.{part}", table.get(part, {}), list(self.kind.SETTINGS))
+            check_keys(f"{where}.{part}", table.get(part, {}), list(self.kind.SETTINGS))
         return table
 
     def list_runs(self):
@@ -229,7 +234,9 @@ class Scenario:
         return out
 
     def fingerprint(self):
-        """The hash of everything that decides a single run's numbers: results of another fingerprint are not resumed."""
+        """The hash of what decides a single run's numbers, the content of files that settings name included: results of
+        another fingerprint are not resumed. Levels of factors are not in it, so that more of them can be added."""
         own = [self.data.get(k) for k in ("task", "stages", "measures")]
-        told = [self.kind_name, self.settings, self.vary, sorted(self.factors), own]
+        files = getattr(self.kind, "files", lambda settings: [])(self.settings)
+        told = [self.kind_name, self.settings, self.vary, sorted(self.factors), own, [_hash_of(f) for f in files]]
         return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:16]

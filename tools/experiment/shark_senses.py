@@ -43,7 +43,7 @@ class Gaze:
         world.images("gaze_crop/color", rate=60.0)
 
     def sees_shark(self, shark):
-        """Shows the newest crop to the detector, and turns the eyes to the shark for the next one."""
+        """Turns the eyes to the shark, then shows that crop to the detector."""
         look = self.looks
         off = [math.radians(draw(self.seed, f"{way} {look}", -1, 1) * self.s["gaze_error_deg"]) for way in ("yaw", "pitch")]
         line = shark - DIVER
@@ -56,7 +56,7 @@ class Gaze:
         if crop is None:
             return False
         self.looker.show(np.array(crop.pixels), look)
-        answer = self.looker.answers(wait_s=30.0)[-1]
+        answer = self.looker.answer(wait_s=30.0)
         self.work_s.append(answer["latency_s"])
         named = [name for name, _, _ in answer["found"]]
         self.wrong += bool(named) and "shark" not in named
@@ -92,6 +92,7 @@ class SonarTrack:
 
     def __init__(self, world, settings):
         self.world, self.at, self.moves, self.last, self.seen, self.errors = world, None, np.zeros(3), 0.0, -1, []
+        self.ping_hz = settings["sonar_hz"]
         world.images("rov_sonar/echoes", rate=settings["sonar_hz"])
 
     def estimate(self, told):
@@ -106,7 +107,7 @@ class SonarTrack:
             if heard is not None and np.hypot(*(heard - self.at)[:2]) < 2.0:
                 off = heard - self.at
                 self.at = self.at + self.ALPHA * off
-                self.moves = self.moves + self.BETA * off * 5.0
+                self.moves = self.moves + self.BETA * off * self.ping_hz
         self.errors.append(float(np.hypot(*(self.at - told)[:2])))
         return self.at, self.moves
 

@@ -1,10 +1,13 @@
 """`neritic study`: a study with people, from consent to withdrawal. STUDIES.md has the plan's format and the files.
 
-What a participant leaves is under FOLDER/participants/PNN and nowhere else: study.json names blocks, orders and pseudonyms
-that were given, never a person. Exit status: 0 done, 1 could not, 2 bad input, 130 interrupted (what is answered is kept).
+A participant's data is under FOLDER/participants/PNN; scores.csv repeats the scores. study.json names blocks, orders and
+pseudonyms that were given, never a person. Exit status: 0 done, 1 could not, 2 bad input, 130 interrupted (what is answered is kept).
 """
 import argparse
+import contextlib
 import csv
+import fcntl
+import glob
 import io
 import json
 import os
@@ -19,9 +22,11 @@ sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 
 import questionnaires
 from report import write_file
-from scenario import Failed, Refused, _check_keys
+from scenario import Failed, Refused, check_keys
 
 WORDS = ("begin", "enrol", "run", "ask", "mark", "withdraw", "table", "wizard")
+# Flags of neritic whose value is a file or folder that a block writes.
+WRITES = ("--record", "--log", "--plot", "--save", "--screenshot", "--timeline", "--out")
 
 
 def read_plan(path):
@@ -32,9 +37,9 @@ def read_plan(path):
         raise Refused(f"{path}: found a file that cannot be read ({error.strerror}); accepted: a study's plan in TOML") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise Refused(f"{path}: found no TOML: {error}") from None
-    _check_keys(path, plan, ["study", "blocks"])
+    check_keys(path, plan, ["study", "blocks"])
     study = plan.get("study", {})
-    _check_keys(f"{path}: study", study, ["title", "consent", "before", "after_block", "after", "practice", "seed"])
+    check_keys(f"{path}: study", study, ["title", "consent", "before", "after_block", "after"])
     for key in ("title", "consent"):
         if not isinstance(study.get(key), str) or not study[key].strip():
             raise Refused(f"{path}: study.{key}: found {study.get(key)!r}; accepted: text")
@@ -47,13 +52,25 @@ def read_plan(path):
         raise Refused(f"{path}: blocks: found {len(blocks) if isinstance(blocks, list) else blocks!r}; accepted: 1 to 20")
     names = []
     for i, block in enumerate(blocks):
-        _check_keys(f"{path}: blocks[{i}]", block, ["name", "about", "command", "wizard"])
-        if not isinstance(block.get("name"), str) or not block["name"].replace("_", "").isalnum() or block["name"] in names:
-            raise Refused(f"{path}: blocks[{i}].name: found {block.get('name')!r}; accepted: a new word of letters, digits, _")
+        check_keys(f"{path}: blocks[{i}]", block, ["name", "about", "command"])
+        if not isinstance(block.get("name"), str) or not block["name"].replace("_", "").isalnum() \
+                or block["name"] in [*names, "before", "after"]:
+            raise Refused(f"{path}: blocks[{i}].name: found {block.get('name')!r}; accepted: a new word of letters, digits, _, "
+                          "not before or after")
         if not isinstance(block.get("command", []), list) or not all(isinstance(w, str) for w in block.get("command", [])):
             raise Refused(f"{path}: blocks[{i}].command: found {block['command']!r}; accepted: a list of words for neritic")
+        _check_writes(f"{path}: blocks[{i}].command", block.get("command", []))
         names.append(block["name"])
     return plan
+
+
+def _check_writes(where, words):
+    """Refuses a file outside the participant's folder, which a withdrawal would leave."""
+    for i, word in enumerate(words):
+        flag, mark, value = word.partition("=")
+        value = value if mark else "".join(words[i + 1:i + 2])
+        if flag in WRITES and not value.startswith(("{record}", "{folder}")):
+            raise Refused(f"{where}: found {flag} {value}; accepted: {flag} {{record}}... or {{folder}}/..., the participant's own")
 
 
 class Study:
@@ -72,13 +89,26 @@ class Study:
     def save(self):
         write_file(os.path.join(self.folder, "study.json"), json.dumps(self.data, indent=2) + "\n")
 
-    def place(self, who):
+    def place(self, who, withdrawn_too=False):
         known = self.data["participants"]
         if who not in known:
             raise Refused(f"{self.folder}: found no participant {who}; accepted: {', '.join(known) or 'none yet: enrol'}")
-        if known[who]["withdrawn"]:
+        if known[who]["withdrawn"] and not withdrawn_too:
             raise Refused(f"{self.folder}: found {who}, who has withdrawn; accepted: one who takes part")
         return os.path.join(self.folder, "participants", who)
+
+
+@contextlib.contextmanager
+def alone(folder):
+    """The study as it is now, which no other process changes meanwhile. Nobody is asked anything in it."""
+    study = Study(folder)
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX)
+        study.__init__(folder)
+        yield study
+    finally:
+        os.close(handle)
 
 
 def now():
@@ -166,16 +196,21 @@ def enrol(asked, screen):
     if screen.ask("Do you consent? Type yes:").lower() != "yes":
         screen.say("No consent: nothing is kept.")
         return
-    known = study.data["participants"]
-    who = f"P{len(known) + 1:02d}"
-    # The order that fewest who take part have: those who withdraw leave their place in the balance to the next.
-    used = [p["order"] for p in known.values() if not p["withdrawn"]]
-    order = min(range(len(study.data["orders"])), key=lambda i: (used.count(i), i))
-    place = os.path.join(asked.folder, "participants", who)
-    os.makedirs(place, exist_ok=True)
-    note(place, marker="consent given")
-    known[who] = {"order": order, "withdrawn": False}
-    study.save()
+    with alone(asked.folder) as study:
+        known = study.data["participants"]
+        # A folder that is there already was left by an enrolment that was cut short: its pseudonym is not given.
+        number = len(known) + 1
+        while os.path.exists(os.path.join(asked.folder, "participants", f"P{number:02d}")):
+            number += 1
+        who = f"P{number:02d}"
+        # The order that fewest who take part have: those who withdraw leave their place in the balance to the next.
+        used = [p["order"] for p in known.values() if not p["withdrawn"]]
+        order = min(range(len(study.data["orders"])), key=lambda i: (used.count(i), i))
+        place = os.path.join(asked.folder, "participants", who)
+        os.makedirs(place)
+        note(place, marker="consent given")
+        known[who] = {"order": order, "withdrawn": False}
+        study.save()
     screen.say(f"You are {who}. Blocks: {', '.join(study.names[i] for i in study.data['orders'][order])}")
 
 
@@ -217,17 +252,21 @@ def _block(asked, place, block, turn):
 
 
 def withdraw(asked, screen):
-    study = Study(asked.folder)
-    place = study.place(asked.who)
+    Study(asked.folder).place(asked.who, withdrawn_too=True)
     if not asked.yes and screen.ask(f"This erases all that {asked.who} left, for good. Type {asked.who} to do it:") != asked.who:
         screen.say("Nothing is erased.")
         return
-    # First the word that they have withdrawn, then the data: a cut in between leaves nobody's data in a table.
-    study.data["participants"][asked.who]["withdrawn"] = True
-    study.save()
-    shutil.rmtree(place)
-    if os.path.exists(os.path.join(asked.folder, "scores.csv")):
-        write_file(os.path.join(asked.folder, "scores.csv"), scores(study))
+    with alone(asked.folder) as study:
+        # First the word that they have withdrawn, then the data; the same command goes on where it was cut short.
+        place = study.place(asked.who, withdrawn_too=True)
+        study.data["participants"][asked.who]["withdrawn"] = True
+        study.save()
+        if os.path.exists(os.path.join(asked.folder, "scores.csv")):
+            write_file(os.path.join(asked.folder, "scores.csv"), scores(study))
+        for left in glob.glob(os.path.join(glob.escape(asked.folder), "*.tmp")):  # by a process that was killed
+            os.remove(left)
+        if os.path.isdir(place):
+            shutil.rmtree(place)
     screen.say(f"{asked.who} is erased. The pseudonym is not given again; the others' data stay as they are.")
 
 
@@ -257,8 +296,9 @@ def scores(study):
 
 
 def table(asked):
-    text = scores(Study(asked.folder))
-    write_file(os.path.join(asked.folder, "scores.csv"), text)
+    with alone(asked.folder) as study:
+        text = scores(study)
+        write_file(os.path.join(asked.folder, "scores.csv"), text)
     print(text, end="")
 
 

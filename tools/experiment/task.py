@@ -15,7 +15,7 @@ import sys
 import numpy as np
 
 from formulas import Formula
-from scenario import Failed, Refused, Setting, _check_keys, _number, _word_of
+from scenario import Failed, Refused, Setting, check_keys, _number, _word_of
 
 STATISTICS = ("last", "first", "mean", "rms", "min", "max", "ever", "share", "duration")
 MOST_SECONDS = 86400.0
@@ -46,7 +46,7 @@ class Task:
     def __init__(self, path, data):
         self.path = path
         task = data.get("task", {})
-        _check_keys(f"{path}: task", task, ["scene", "controller", "control_hz", "seconds", "participants", "places",
+        check_keys(f"{path}: task", task, ["scene", "controller", "control_hz", "seconds", "participants", "places",
                                             "settings", "tells", "stop", "player"])
         for key in ("scene", "controller"):
             if not isinstance(task.get(key), str):
@@ -70,7 +70,7 @@ class Task:
         self.SETTINGS = {"controller": Setting("baseline", "the scenario's own, null (the robot that holds still), or a .py file of yours")}
         for name, table in _table(f"{path}: task.settings", task.get("settings", {})).items():
             where = f"{path}: task.settings.{name}"
-            _check_keys(where, table, ["default", "meaning", "limits", "words"])
+            check_keys(where, table, ["default", "meaning", "limits", "words"])
             default = table.get("default")
             limits, words = table.get("limits", [-1e9, 1e9]), table.get("words")
             if not isinstance(limits, list) or len(limits) != 2:
@@ -88,42 +88,48 @@ class Task:
         self.tells = self._names("tells", task)
         self.stages, names = [], self.participants + list(self.places)
         numbers = ["time", "stage_time"] + self.tells + [k for k, s in self.SETTINGS.items() if not isinstance(s.default, str)]
-        self._formula = lambda where, text: Formula(where, text, names, numbers)
+        def formula(where, text):
+            return Formula(where, text, names, numbers)
+
         for i, stage in enumerate(_tables(f"{path}: stages", data.get("stages", []))):
             where = f"{path}: stages[{i}]"
-            _check_keys(where, stage, ["name", "until", "held_s", "at_most_s"])
+            check_keys(where, stage, ["name", "until", "held_s", "at_most_s"])
             if not isinstance(stage.get("name"), str):
                 raise Refused(f"{where}.name: found {stage.get('name')!r}; accepted: a word")
-            self.stages.append({"name": stage["name"], "until": self._formula(f"{where}.until", stage.get("until")),
+            self.stages.append({"name": stage["name"], "until": formula(f"{where}.until", stage.get("until")),
                                 "held_s": _number(f"{where}.held_s", stage.get("held_s", 0), 0, MOST_SECONDS),
                                 "at_most_s": _number(f"{where}.at_most_s", stage.get("at_most_s", self.seconds), 0, MOST_SECONDS)})
         if not self.stages:
             raise Refused(f"{path}: stages: found none; accepted: one or more")
-        self.stop = self._formula(f"{path}: task.stop", task["stop"]) if "stop" in task else None
+        self.stop = formula(f"{path}: task.stop", task["stop"]) if "stop" in task else None
         self.measures, self.MEASURES = [], {
             "success": ("yes or no", "whether every stage ended in its time"),
             "time_s": ("s", "until the last stage ended, of the runs that succeed")}
         self.MEASURES |= {f"{s['name']}_s": ("s", f"how long the stage {s['name']} took") for s in self.stages}
         for i, measure in enumerate(_tables(f"{path}: measures", data.get("measures", []))):
             where = f"{path}: measures[{i}]"
-            _check_keys(where, measure, ["name", "of", "statistic", "stage", "unit", "meaning"])
+            check_keys(where, measure, ["name", "of", "statistic", "stage", "unit", "meaning"])
             statistic, stage = measure.get("statistic", "mean"), measure.get("stage")
             if not isinstance(measure.get("name"), str) or measure["name"] in self.MEASURES:
                 raise Refused(f"{where}.name: found {measure.get('name')!r}; accepted: a new word")
             _word_of(f"{where}.statistic", statistic, STATISTICS)
             if stage is not None and stage not in [s["name"] for s in self.stages]:
                 raise Refused(f"{where}.stage: found {stage!r}; accepted: {', '.join(s['name'] for s in self.stages)}")
-            self.measures.append({"name": measure["name"], "of": self._formula(f"{where}.of", measure.get("of")),
+            self.measures.append({"name": measure["name"], "of": formula(f"{where}.of", measure.get("of")),
                                   "statistic": statistic, "stage": stage})
             unit = "yes or no" if statistic == "ever" else "s" if statistic == "duration" else str(measure.get("unit", ""))
             self.MEASURES[measure["name"]] = (unit, str(measure.get("meaning", measure.get("of"))))
-        del self._formula
 
     def _names(self, key, task):
         names = task.get(key, [])
         if not isinstance(names, list) or not all(isinstance(n, str) for n in names):
             raise Refused(f"{self.path}: task.{key}: found {names!r}; accepted: a list of words")
         return names
+
+    def files(self, settings):
+        """The files that decide a run's numbers, beside the settings: scene, player and controller."""
+        own = {"baseline": self.controller, "null": None}.get(settings["controller"], settings["controller"])
+        return [f for f in (self.scene, self.player, own) if f]
 
     def check(self, settings):
         """Refuses a controller that is not there, before anything runs."""

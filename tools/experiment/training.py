@@ -13,7 +13,7 @@ import numpy as np
 
 import looking
 from runner import Tools
-from scenario import Failed
+from scenario import Failed, Refused
 
 EACH = 20  # crops of a class and a scene
 PASSES, BATCH, THREADS = 18, 64, 2
@@ -40,9 +40,9 @@ def gather(maker, program, scenes, seed, workers, told):
     return out
 
 
-def network(torch, channels, classes, width=16):
-    """Four convolutions, then the mean of each map: 47 000 weights at width 16, 12 000 at 8."""
-    nn, w = torch.nn, width
+def network(torch, channels, classes):
+    """Four convolutions, then the mean of each map: 47 000 weights."""
+    nn, w = torch.nn, 16
 
     def block(a, b, stride):
         return [nn.Conv2d(a, b, 3, stride, 1, bias=False), nn.BatchNorm2d(b), nn.ReLU()]
@@ -65,7 +65,7 @@ def _blobs(pixels):
     return np.stack([looking.normalised(p).transpose(2, 0, 1) for p in pixels])
 
 
-def train(name, maker, classes, channels, width, program, scenes, seed, workers, out, quiet):
+def train(name, maker, classes, channels, program, scenes, seed, workers, out, quiet):
     try:
         import torch
     except ModuleNotFoundError:
@@ -73,7 +73,9 @@ def train(name, maker, classes, channels, width, program, scenes, seed, workers,
     torch.manual_seed(seed)
     torch.set_num_threads(THREADS)
     torch.use_deterministic_algorithms(True)
-    scenes = max(10, scenes or 80)
+    scenes = 80 if scenes is None else scenes
+    if scenes < 10:
+        raise Refused(f"--runs: found {scenes}; accepted: 10 scenes or more, to learn from")
     made = gather(maker, program, scenes, 1000 * seed, workers, not quiet)
     kept = scenes // 10
     x, y = (np.concatenate([m[i] for m in made[kept:]]) for i in (0, 1))
@@ -82,7 +84,7 @@ def train(name, maker, classes, channels, width, program, scenes, seed, workers,
         print(f"{len(y)} crops to learn from, {len(yv)} to choose by: {np.bincount(y, minlength=len(classes)).tolist()}", flush=True)
     x, y, xv, yv = torch.tensor(_blobs(x)), torch.tensor(y), torch.tensor(_blobs(xv)), torch.tensor(yv)
     x, xv = (t.to(memory_format=torch.channels_last) for t in (x, xv))  # four times as fast
-    net = network(torch, channels, len(classes), width).to(memory_format=torch.channels_last)
+    net = network(torch, channels, len(classes)).to(memory_format=torch.channels_last)
     steps = PASSES * (len(y) // BATCH)
     optimiser = torch.optim.AdamW(net.parameters(), lr=3e-3, weight_decay=2e-2)
     rate = torch.optim.lr_scheduler.OneCycleLR(optimiser, max_lr=6e-3, total_steps=steps)
@@ -138,7 +140,7 @@ def _export(torch, model, name, channels, classes, seed, scenes, share, out):
     path = os.path.join(out, name + ".onnx")
     torch.onnx.export(model.to(memory_format=torch.contiguous_format), torch.zeros(1, channels, 64, 64), path + ".tmp", opset_version=11,
                       input_names=["crop"], output_names=["shares"])
-    about = {"kind": "classifier", "classes": classes, "side": 64, "channels": channels, "normalise": "crop",
+    about = {"kind": "classifier", "classes": classes, "side": 64, "normalise": "crop",
              "made_by": f"neritic experiment train_{name} --runs {scenes} --seed {seed}",
              "share_of_crops_kept_aside": round(share, 4)}
     with open(os.path.join(out, name + ".json.tmp"), "w", encoding="utf-8") as file:

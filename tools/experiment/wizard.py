@@ -1,5 +1,5 @@
 """A Wizard of Oz's console: an experimenter in another room flies the robot of a served dive by keys, unseen, and speaks for
-it by numbered phrases. Each key is a marker. `neritic serve SCENE --real-time` beside it; keys go through a terminal."""
+it by numbered phrases. Each key is a marker. `neritic serve SCENE --realtime` or `neritic dive SCENE --serve` beside it; keys go through a terminal."""
 import math
 import os
 import select

@@ -439,10 +439,12 @@ Status run_dive(const DiveFlags& asked) {
   DiveFlags flags = asked;
   const fs::path recording = fs::path(xdf).replace_extension(".mcap");
   flags.files.record = recording.string();
+  std::error_code none;
+  const auto before = fs::last_write_time(recording, none);
   const Status status = run_whole_dive(flags);
-  if (!status.ok() && status.error().code != ErrorCode::kInterrupted) return status;
-  NERITIC_TRY_STATUS(write_xdf(recording, xdf));
-  return status;
+  if (fs::last_write_time(recording, none) == before) return status;  // nothing was recorded
+  const Status written = write_xdf(recording, xdf);
+  return status.ok() ? written : status;
 }
 
 }  // namespace neritic::tools

@@ -6,13 +6,17 @@
 namespace neritic::tools {
 using namespace testbed;
 
+Result<Address> tcp_address(const std::string& flag, const std::string& text) {
+  auto parsed = parse_address(text);
+  if (!parsed.ok()) return bad_input("{}: {}", flag, parsed.error().message);
+  if (parsed->transport != Transport::kTcp) return refusal(flag, text, "tcp://ADDRESS:PORT");
+  return std::move(parsed).value();
+}
+
 Result<ServerOptions> server_options(const std::string& flag, const std::string& address,
                                      const std::filesystem::path& keys, std::uint32_t clients) {
   ServerOptions options;
-  auto parsed = parse_address(address);
-  if (!parsed.ok()) return bad_input("{}: {}", flag, parsed.error().message);
-  if (parsed->transport != Transport::kTcp) return refusal(flag, address, "tcp://ADDRESS:PORT");
-  options.socket.address = *parsed;
+  NERITIC_TRY(options.socket.address, tcp_address(flag, address));
   options.socket.clients = clients;
   options.socket.guard.connections = clients + 96;
   if (!keys.empty()) {

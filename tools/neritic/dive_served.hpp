@@ -7,6 +7,9 @@
 
 namespace neritic::tools {
 
+// An address of TCP, beyond which this program's servers do not go.
+Result<Address> tcp_address(const std::string& flag, const std::string& text);
+
 // Where a server listens. flag: "--bind". keys: a folder; empty: none.
 Result<testbed::ServerOptions> server_options(const std::string& flag, const std::string& address,
                                               const std::filesystem::path& keys,

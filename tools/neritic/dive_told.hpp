@@ -36,4 +36,9 @@ nlohmann::json dangers_json(const testbed::PhysicsHuman& human,
 nlohmann::json changes_json(const testbed::PhysicsHuman& human,
                             const testbed::HumanFigures& figures);
 
+// Words that both forms share: a tank by its number and gas; whether a source's samples were
+// refused.
+std::string tank_words(const testbed::PhysicsHuman& human, std::uint64_t tank);
+bool in_trouble(const testbed::SourceCounts& counts);
+
 }  // namespace neritic::tools

@@ -9,6 +9,7 @@
 #include "testbed/view/dive_hud.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/dive_physics.hpp"
+#include "tools/neritic/dive_served.hpp"
 #include "tools/neritic/hud_flags.hpp"
 #include "tools/neritic/interrupt.hpp"
 #include "tools/neritic/recorded_scene.hpp"
@@ -77,11 +78,7 @@ Status show_frames(OverlaySession& overlay, DiveHud& hud, std::uint64_t frames,
 
 Result<std::unique_ptr<RemoteInstruments>> connect(const HudFlags& flags) {
   RemoteInstrumentsOptions options{.remote = {.name = "hud"}, .diver = flags.diver};
-  auto address = parse_address(flags.connect);
-  if (!address.ok()) return bad_input("--connect: {}", address.error().message);
-  if (address->transport != Transport::kTcp)
-    return refusal("--connect", flags.connect, "tcp://ADDRESS:PORT");
-  options.remote.socket.address = *address;
+  NERITIC_TRY(options.remote.socket.address, tcp_address("--connect", flags.connect));
   if (!flags.key.empty()) {
     NERITIC_TRY(options.remote.socket.keys, net::read_secret(flags.key));
     const auto beside = flags.key.parent_path() / "server.public";

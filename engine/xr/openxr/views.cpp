@@ -6,12 +6,6 @@
 #include "engine/core/log.hpp"
 
 namespace neritic::xr::openxr {
-namespace {
-
-// Runtimes give some hundred.
-constexpr std::size_t kMostHiddenCorners = 6000;
-
-}  // namespace
 
 Result<std::unique_ptr<Views>> Views::create(Runtime& runtime, const Session& session,
                                              gpu::Device& device, bool pictures) {
@@ -140,7 +134,9 @@ void Views::read_masks() {
     XrVisibilityMaskKHR mask{XR_TYPE_VISIBILITY_MASK_KHR};
     // A sharp view that follows the gaze has another frustum in each frame.
     if (foveated_ && i >= 2) break;
-    if (!ask(mask) || mask.vertexCountOutput == 0 || mask.indexCountOutput == 0) continue;
+    if (!ask(mask) || mask.vertexCountOutput == 0 || mask.indexCountOutput == 0 ||
+        mask.vertexCountOutput > kMostHiddenCorners || mask.indexCountOutput > kMostHiddenCorners)
+      continue;
     std::vector<XrVector2f> points(mask.vertexCountOutput);
     std::vector<std::uint32_t> corners(mask.indexCountOutput);
     mask.vertexCapacityInput = mask.vertexCountOutput;

@@ -41,7 +41,7 @@ TEST_F(HeadsetCost, AStereoFrameOfTheDiveTakesLessThan1_5MillisecondsOfOneCore) 
   without_layer();
   without_validation();
   scene::Scene scene = scene::load_scene(test::source_dir() / "assets/scenes/dive.toml").value();
-  // What the scene's light, water and stones add is timed by itself (engine/render/TRADE.md):
+  // The scene's light, water and stones are left out; engine/render/TRADE.md has their prices:
   // particles of snow are placed anew for each frame, and frames that the device draws for longer
   // than the instruments' period draw these each time.
   scene.sun->shadows.reset();

@@ -147,7 +147,7 @@ TEST_F(HeadsetHud, TextIsUprightAndUnmirroredWhereEachEyesFrustumPutsIt) {
   }
 }
 
-// What the lenses hide is not drawn, and nothing else changes.
+// Hidden pixels are not drawn, and nothing else changes.
 TEST_F(HeadsetHud, WhatTheLensesHideIsNotDrawn) {
   std::vector<ImageU8> pictures;
   for (const char* without : {"", "without XR_KHR_visibility_mask\n"}) {

@@ -1,4 +1,4 @@
-// What cameras make of a pinhole's picture, by numbers: lens, vignette, noise, raw counts; flow and
+// Cameras' terms by numbers: lens, vignette, noise, raw counts; flow and
 // depth that lead each pixel to where its point is next; boxes of what is seen.
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 const scene::Lens kBrown{scene::LensModel::kBrownConrady, {-0.22, 0.05, 0.0}, {0.002, -0.001}};
 const scene::Lens kFisheye{scene::LensModel::kFisheye, {-0.02, 0.003, 0.0, 0.0}};
-// Of a picture of nothing (Lighting::background).
+// The colour of a picture of nothing (Lighting::background).
 const Vec3f kBackground(0.06f, 0.075f, 0.10f);
 
 scene::Scene scene_with(const scene::CameraTerms& terms, std::uint32_t side = 96) {
@@ -101,6 +101,19 @@ TEST_F(CameraTermsTest, RawCountsStandBehindTheirFilters) {
   for (std::uint32_t y = 0; y < 16; ++y)
     for (std::uint32_t x = 0; x < 16; ++x)
       EXPECT_NEAR(eye.raw.at(x, y), 4095 * kBackground[colors[2 * (y % 2) + x % 2]], 2.0);
+}
+
+TEST(PictureMap, PointsFarBesideALensStayOutsideOfItsPicture) {
+  const PictureMap map{.intrinsics = {100.0, 100.0, 50.0, 50.0},
+                       .lens = scene::Lens{.k = {-0.3, 0.0, 0.0, 0.0}},
+                       .width = 100,
+                       .height = 100};
+  double before = 0.0;
+  for (double degree = 0.0; degree < 85.0; degree += 1.0) {
+    const double x = map.pixel_of({std::tan(radians(degree)), 0.0, -1.0}).x;
+    EXPECT_GT(x, before) << degree;
+    before = x;
+  }
 }
 
 TEST_F(CameraTermsTest, VignetteFallsAsTheFourthPowerOfTheCosine) {

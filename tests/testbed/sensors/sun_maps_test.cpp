@@ -109,6 +109,34 @@ double mean_difference(const ImageU8& a, const ImageU8& b) {
   return sum / static_cast<double>(a.data.size());
 }
 
+// A window's view has the name of the camera that it looks through.
+TEST_F(SunMapsTest, AViewOfACamerasNameHasMapsOfItsOwn) {
+  const auto both = [](Session& session, bool camera, bool view) {
+    const scene::MotionSource motion(session.scene(), nullptr);
+    FrameRequest request;
+    if (camera) request.cameras = {0};
+    if (view) {
+      request.views.push_back({.name = "eye",
+                               .views = camera_views(motion, session.scene().cameras[0]),
+                               .capture = {.motion = false}});
+      request.views[0].detail.shadow_size = 0.5;
+      for (render::ViewDesc& one : request.views[0].views.views)
+        one.world_from_view.position_m.x += 1.5;
+    }
+    auto result = session.render(request);
+    EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
+    return std::move(result).value();
+  };
+  NERITIC_ASSERT_OK(const auto alone, Session::create(device(), beach(false)));
+  NERITIC_ASSERT_OK(const auto together, Session::create(device(), beach(false)));
+  const FrameResult camera = both(*alone, true, false), view = both(*alone, false, true);
+  for (int frame = 0; frame < 2; ++frame) {
+    const FrameResult result = both(*together, true, true);
+    EXPECT_EQ(result.cameras[0].eyes[0].color.data, camera.cameras[0].eyes[0].color.data);
+    EXPECT_EQ(result.views[0].eyes[0].color.data, view.views[0].eyes[0].color.data);
+  }
+}
+
 TEST_F(SunMapsTest, FollowTheCameraWithoutAPop) {
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), beach(false)));
   NERITIC_ASSERT_OK(const auto fresh, Session::create(device(), beach(false)));

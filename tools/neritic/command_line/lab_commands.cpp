@@ -175,7 +175,10 @@ void add_study(CLI::App& app, CommandLine& line) {
       "trust)\n"
       "neritic study mark FOLDER P01 TEXT            a marker at this moment\n"
       "neritic study withdraw FOLDER P01             erases what P01 left, and nothing else\n"
-      "neritic study table FOLDER                    all answers and scores, by pseudonym\n"
+      "neritic study table FOLDER                    the scores of run's questionnaires, by "
+      "pseudonym\n"
+      "neritic study wizard FOLDER P01               a console that flies the robot of a served "
+      "dive\n"
       "tools/experiment/STUDIES.md says the rest");
   command->callback([command, &line] {
     line.run = [words = command->remaining()] { return nothing_to_say(run_study(words)); };

@@ -17,24 +17,12 @@ Error, BadInput   what is raised, in one line
 """
 
 from . import _core
+from .agents import Agent, Diver, TrackedObject, Vehicle
 from .errors import BadInput, Error
+from .observations import MODEM_EVENTS, Image, Message, Observations, Reading, Stream, Truth
 from .remote import RemoteWorld, connect
 from .vector import VectorEnv, vector
-from .world import (
-    MODEM_EVENTS,
-    Agent,
-    Diver,
-    Image,
-    Message,
-    Observations,
-    Reading,
-    Stream,
-    TrackedObject,
-    Truth,
-    Vehicle,
-    World,
-    open,
-)
+from .world import World, open
 
 _core.set_errors(Error, BadInput)
 

@@ -18,7 +18,9 @@ from typing import Optional
 import numpy as np
 
 from .remote import RemoteWorld, connect
-from .world import Diver, TrackedObject, Truth, World, open
+from .agents import Diver, TrackedObject
+from .observations import Truth
+from .world import World, open
 
 _HOLD_S = 0.5
 

@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import BadInput, Error
-from .world import Truth, World
+from .observations import Truth
+from .world import World
 
 _PROTOCOL = 1
 _ROW = struct.Struct("<IIQqq")
@@ -126,7 +127,7 @@ class Core:
                          [tuple(field) for field in s["fields"]], s["rate_hz"], s["encoding"])
                         for s in hello["streams"]]
         self.agents = [(a["name"], a["kind"], [tuple(pair) for pair in a["thruster_n"]],
-                        a["takes_pwm"], a["has_mission"], a.get("modem", 0)) for a in hello["agents"]]
+                        a["takes_pwm"], a["has_mission"], a["modem"]) for a in hello["agents"]]
         self._places = {stream[0]: i for i, stream in enumerate(self.streams)}
         self._newest: list[Row] = [((i, 0, 0, 0, 0), np.zeros(0)) for i in range(len(self.streams))]
         self._arrived: list[Row] = []

@@ -1,0 +1,139 @@
+"""The agents of a world: vehicles, divers, objects, and what can be asked of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Optional, Sequence, Union
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .errors import BadInput
+from .observations import Message
+
+if TYPE_CHECKING:
+    from .world import World
+
+
+class Agent:
+    """A vehicle, a diver or an object of the scene. A command holds until the next one, until
+    release(), or, with hold > 0, until so many seconds passed without one."""
+
+    def __init__(self, world: World, name: str) -> None:
+        self._world, self.name = world, name
+        self.modem = 0
+        """The number of its modem among the scene's, from 1 on; 0: it has none."""
+
+    def send(self, data: Union[bytes, str], to: Optional[str] = None) -> None:
+        """Sends up to 64 bytes by sound with the next step, to one agent's modem or to all (None). Whether
+        and when it arrives is the water's affair: receive() of the other one, and readings of NAME/modem
+        (event: MODEM_EVENTS)."""
+        if isinstance(data, str):
+            data = data.encode()
+        number = 0
+        if to is not None:
+            number = self._world[to].modem
+            if not number:
+                raise BadInput(f"{self.name}: send: found {to}, an agent without a modem; accepted: "
+                               f"{', '.join(self._world._modems)}")
+        self.command("send", [number, *data])
+
+    def receive(self) -> list[Message]:
+        """The messages that its modem received since the last call, oldest first (the newest 1024)."""
+        if not self.modem:
+            raise BadInput(f"{self.name}: receive: found an agent without a modem; accepted: "
+                           f"{', '.join(self._world._modems)}")
+        mail = self._world._mail[f"{self.name}/modem"]
+        messages = list(mail)
+        mail.clear()
+        return messages
+
+    def command(self, kind: str, values: ArrayLike, hold: float = 0.0) -> None:
+        """A command by its name and numbers, as the methods below send it."""
+        self._world._core.command(self.name, kind, np.asarray(values, np.float64).ravel(), hold,
+                                  self._world.source)
+
+    def release(self) -> None:
+        """Gives the agent back to what the scene chose: its mission, its autopilot, its devices."""
+        self._world._core.release(self.name, self._world.source)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__.lower()} {self.name}>"
+
+
+class Vehicle(Agent):
+    """An underwater vehicle."""
+
+    def __init__(self, world: World, name: str, thruster_n: Sequence[tuple[float, float]],
+                 takes_pwm: bool) -> None:
+        super().__init__(world, name)
+        self.thruster_n = np.array(thruster_n, np.float64).reshape(-1, 2)
+        """Least and most force of each thruster, in newtons."""
+        self.takes_pwm = takes_pwm
+        """Whether its file names a thrust table, which pwm() needs."""
+
+    def goto(self, x: float, y: float, z: float, yaw: float = 0.0,
+             velocity: Sequence[float] = (0.0, 0.0, 0.0), hold: float = 0.0) -> None:
+        """Be there, level: east, north, up in metres, yaw from east towards north. velocity: of the
+        place itself, if it moves."""
+        self.command("goto", [x, y, z, yaw, *velocity], hold)
+
+    def velocity(self, forward: float, left: float = 0.0, up: float = 0.0, yaw_rate: float = 0.0,
+                 hold: float = 0.0) -> None:
+        """Move so over ground, level, in m/s of its heading and rad/s."""
+        self.command("velocity", [forward, left, up, yaw_rate], hold)
+
+    def wrench(self, force: Sequence[float], torque: Sequence[float] = (0.0, 0.0, 0.0),
+               hold: float = 0.0) -> None:
+        """Forces and moments in N and N m, body axes. Depth and heading are held where it is 0."""
+        self.command("wrench", [*force, *torque], hold)
+
+    def thrusters(self, force_n: ArrayLike, hold: float = 0.0) -> None:
+        """The force of each thruster in N, in the order of the vehicle's file. Nothing is held."""
+        self.command("thrusters", force_n, hold)
+
+    def pwm(self, width_us: ArrayLike, hold: float = 0.0) -> None:
+        """The pulse width of each thruster's controller in microseconds: 1500 stands still."""
+        self.command("pwm", width_us, hold)
+
+    def fail(self, thrusters: Sequence[int] = ()) -> None:
+        """These thrusters, counted from 0, give nothing from now on; () mends all."""
+        failed = np.zeros(len(self.thruster_n))
+        failed[list(thrusters)] = 1.0
+        self.command("faults", failed)
+
+
+class Diver(Agent):
+    """A diver."""
+
+    def jacket(self, inflate: bool = False, deflate: bool = False, dump: bool = False,
+               hold: float = 0.0) -> None:
+        """The jacket's buttons that are pressed from now on."""
+        self.command("buttons", [inflate, deflate, dump], hold)
+
+    def joints(self, rotations: ArrayLike, hold: float = 0.0) -> None:
+        """15 rotations, parent from child, as quaternions x y z w: abdomen, thorax, head; left upper
+        arm, forearm, hand; right ones; left upper leg, lower leg, foot; right ones."""
+        self.command("joints", rotations, hold)
+
+    def head(self, orientation: Sequence[float], position: Optional[Sequence[float]] = None,
+             hold: float = 0.0) -> None:
+        """Where the head looks (world from head, forward, left, up) and, if position is given, is."""
+        placed = position is not None
+        self.command("head", [*(position or (0.0, 0.0, 0.0)), *orientation, placed], hold)
+
+    def gas(self, tank: int) -> None:
+        """Breathe from that tank; 0 is the first."""
+        self.command("gas", [tank])
+
+
+class TrackedObject(Agent):
+    """An object that devices or programs move."""
+
+    def pose(self, position: Sequence[float], orientation: Sequence[float] = (0.0, 0.0, 0.0, 1.0),
+             velocity: Optional[Sequence[float]] = None,
+             angular_velocity: Sequence[float] = (0.0, 0.0, 0.0), hold: float = 0.0) -> None:
+        """It is there now. Velocities are over world axes; absent: they follow from two poses."""
+        values = [*position, *orientation]
+        if velocity is not None:
+            values += [*velocity, *angular_velocity]
+        self.command("pose", values, hold)
