@@ -1,6 +1,7 @@
 """The parts of tools/experiment that need no program: boxes of detectors, orders, scores, studies, intervals, power. Exit 77: skipped."""
 import math
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -21,7 +22,10 @@ import crops
 import detector
 import intervals
 import looking
+import places
 import questionnaires
+import report
+import rotations
 from human_state import HumanState
 from scenario import Failed, Refused
 
@@ -29,6 +33,10 @@ try:
     import cv2
 except ModuleNotFoundError:
     cv2 = None
+try:
+    import torch
+except ModuleNotFoundError:
+    torch = None
 
 
 class Boxes(unittest.TestCase):
@@ -52,6 +60,76 @@ class Boxes(unittest.TestCase):
     def test_rows_of_another_width_are_told(self):
         with self.assertRaisesRegex(Failed, "rows of 6 numbers; accepted: 7 for 2 classes of yolo5"):
             looking.boxes_of("yolo5", np.zeros((1, 3, 6)), 2, 64)
+
+
+class Rotations(unittest.TestCase):
+    def test_turns_go_about_up_then_left_then_forward(self):
+        ahead, left, up = np.eye(3)
+        np.testing.assert_allclose(rotations.matrix(rotations.quaternion(math.pi / 2, 0, 0)) @ ahead, left, atol=1e-12)
+        np.testing.assert_allclose(rotations.matrix(rotations.quaternion(0, math.pi / 2, 0)) @ ahead, -up, atol=1e-12)
+        np.testing.assert_allclose(rotations.matrix(rotations.quaternion(0, 0, math.pi / 2)) @ left, up, atol=1e-12)
+        np.testing.assert_allclose(rotations.scene_matrix(90) @ [0, 0, -1], [-1, 0, 0], atol=1e-12)  # to port
+
+    def test_a_matrix_gives_its_quaternion_back(self):
+        rng = np.random.Generator(np.random.Philox(key=3))
+        for turn in [*rng.uniform(-math.pi, math.pi, (50, 3)), [math.pi, 0, 0], [0, math.pi, 0], [0, 0, 0]]:
+            m = rotations.matrix(rotations.quaternion(*turn))
+            np.testing.assert_allclose(m @ m.T, np.eye(3), atol=1e-12)
+            np.testing.assert_allclose(rotations.matrix(rotations.quaternion_of(m)), m, atol=1e-9)
+
+
+class Crops(unittest.TestCase):
+    def test_no_place_or_model_of_the_test_is_learnt_from(self):
+        of = {k: set(v["places"]) for k, v in places.SPLITS.items()}
+        self.assertFalse(of["test"] & (of["train"] | of["choose"]) or of["train"] & of["choose"])
+        self.assertFalse(set(places.SPLITS["test"]["waters"]) & {w for k in ("train", "choose") for w in places.SPLITS[k]["waters"]})
+        for split, names in of.items():
+            for name in names:
+                self.assertTrue(places.PLACES[name].format(floor=-10, assets="A").count("[[objects]]") > 0 or name == "open", name)
+                for object_name in re.findall('^name = "(.*)"', places.PLACES[name], re.M):
+                    self.assertRegex(object_name, "^[A-Za-z0-9_-]{1,64}$")
+        models = [set(part.split('"')[0] for n in of[k] for part in places.PLACES[n].split("models/")[1:]) for k in ("test", "train", "choose")]
+        self.assertFalse(models[0] & (models[1] | models[2]))
+
+    def test_what_nobody_could_name_is_no_crop(self):
+        light = np.tile(np.linspace(60, 120, 64)[:, None, None], (1, 64, 3))
+        its = np.zeros((64, 64), bool)
+        its[20:34, 20:34] = True
+        for off, seen in ((0.0, False), (crops.LEAST_CONTRAST - 1, False), (crops.LEAST_CONTRAST + 1, True)):
+            self.assertEqual(crops.visible(light + off * its[..., None], its), seen)
+        small = np.zeros((64, 64), bool)
+        small[30:40, 30:40] = True  # 100 pixels
+        self.assertFalse(crops.visible(light + 50 * small[..., None], small))
+
+    @unittest.skipIf(torch is None, "no PyTorch here")
+    def test_lessons_vary_by_the_seed_and_keep_their_thing(self):
+        import variations
+        pictures = np.full((10, 96, 96, 4), 90, np.uint8)
+        pictures[..., 3] = 0
+        pictures[5:, 36:60, 36:60] = [200, 180, 40, 255]
+        classes = np.array([0] * 5 + [1] * 5)
+        one, other = (variations.of(torch, pictures, classes, seed) for seed in (7, 7))
+        for _ in range(3):
+            (x, y), (again, _) = one(16), other(16)
+            self.assertTrue(torch.equal(x, again))
+            self.assertEqual(tuple(x.shape), (16, 3, 64, 64))
+            np.testing.assert_allclose(x.mean((2, 3)).numpy(), 0, atol=1e-4)
+            for i in range(16):  # a bright thing of at least 2.5 % is there, or is not
+                self.assertEqual(bool((x[i, 0] > 1.5).float().mean() > 0.02 and x[i, 0].max() - x[i, 0].mean() > 1.5 and y[i] == 1), bool(y[i] == 1))
+
+
+class Pages(unittest.TestCase):
+    def test_the_page_of_all_tells_what_failed_and_what_is_missing(self):
+        criterion = {"measure": "m", "statistic": "median", "where": {}, "less": None, "found": 0.5, "n": 3, "at_most": 1.0,
+                     "at_least": None, "holds": True}
+        told = {"experiment": "one", "runs": 3, "processor_s": 90.0, "criteria": [criterion, {**criterion, "holds": False}]}
+        with tempfile.TemporaryDirectory() as folder:
+            report.index([told], [("two", "no <GPU>")], ["three"], folder)
+            with open(os.path.join(folder, "index.html")) as file:
+                text = file.read()
+            self.assertEqual(os.listdir(folder), ["index.html"])
+        for words in ("1 of 2 criteria hold; 3 runs took 1.5 minutes", "no &lt;GPU&gt;", "not run yet", "does not hold"):
+            self.assertIn(words, text)
 
 
 class Questionnaires(unittest.TestCase):

@@ -63,6 +63,20 @@ def do(plan, asked, out):
     return told, results
 
 
+def every(asked):
+    """Each shipped scenario; one that cannot be done is told, and the others go on. Returns (summaries, [(name, why)])."""
+    folder(asked.out)
+    names, told, failed = scenario.names(), [], []
+    for i, name in enumerate(names):
+        try:
+            told.append(one(scenario.path_of(name), asked, os.path.join(asked.out, name)))
+        except scenario.Failed as error:
+            failed.append((name, str(error)))
+            print(f"neritic: {name}: {error}", file=sys.stderr)
+        report.index(told, failed, names[i + 1:], asked.out)
+    return told, failed
+
+
 def train(asked):
     name, maker, channels = TRAINED[asked.name]
     folder(asked.out)
@@ -110,17 +124,13 @@ def main():
             return train(asked)
         if asked.name == "tradeoff":
             return trade(asked)
-        if asked.name == "all":
-            told = [one(scenario.path_of(n), asked, os.path.join(asked.out, n)) for n in scenario.names()]
-            report.index(told, asked.out)
-        else:
-            told = [one(scenario.path_of(asked.name), asked, asked.out)]
+        told, failed = every(asked) if asked.name == "all" else ([one(scenario.path_of(asked.name), asked, asked.out)], [])
         if asked.json:
             print(json.dumps(told if asked.name == "all" else told[0], indent=2))
         elif not asked.quiet:
             for t in told:
                 tell(t, os.path.join(asked.out, t["experiment"]) if asked.name == "all" else asked.out)
-        return 0 if all(t["passed"] for t in told) else 1
+        return 0 if not failed and all(t["passed"] for t in told) else 1
     except scenario.Refused as error:
         print(f"neritic: {error}", file=sys.stderr)
         return 2

@@ -8,6 +8,7 @@ import numpy as np
 
 import posed_model
 import ray_caster
+from rotations import quaternion_of, scene_matrix
 from scenario import SHIPPED, Setting
 
 MODELS = os.path.join(SHIPPED, "..", "models")
@@ -69,7 +70,7 @@ def _level(settings):
     """(pelvis in sonar axes, 3 x 3 of the prone diver, its triangles in sonar axes)."""
     bearing, r = math.radians(settings["diver_bearing_deg"]), settings["diver_range_m"]
     at = np.array([r * math.sin(bearing), 0.0, -r * math.cos(bearing)])
-    prone = posed_model.yaw_pitch_roll(settings["diver_yaw_deg"], -90.0)
+    prone = scene_matrix(settings["diver_yaw_deg"], -90.0)
     model = posed_model.Model(os.path.join(MODELS, "diver.glb"))
     return at, prone, model.triangles("swim", settings["clip_s"]) @ prone.T + at
 
@@ -77,19 +78,9 @@ def _level(settings):
 def _tilt(triangles, tilt_rad):
     """3 x 3 that lifts the sight by an angle, about the level axis across the bearing of the diver's middle."""
     middle = triangles.reshape(-1, 3).mean(axis=0)
-    across = posed_model.yaw_pitch_roll(-math.degrees(math.atan2(middle[0], -middle[2])))
+    across = scene_matrix(-math.degrees(math.atan2(middle[0], -middle[2])))
     c, s = math.cos(tilt_rad), math.sin(tilt_rad)
     return across @ np.array([[1, 0, 0], [0, c, -s], [0, s, c]]) @ across.T
-
-
-def _quaternion(m):
-    """x y z w of a rotation, by its largest component."""
-    k = np.array([[m[0, 0] - m[1, 1] - m[2, 2], 0, 0, 0],
-                  [m[0, 1] + m[1, 0], m[1, 1] - m[0, 0] - m[2, 2], 0, 0],
-                  [m[0, 2] + m[2, 0], m[1, 2] + m[2, 1], m[2, 2] - m[0, 0] - m[1, 1], 0],
-                  [m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1], np.trace(m)]]) / 3.0
-    values, vectors = np.linalg.eigh(k)
-    return vectors[:, np.argmax(values)]
 
 
 def _sonar(settings):
@@ -102,7 +93,7 @@ def _scene(settings, seed, level):
     divers, sonars = "", ""
     for name, (x, side) in PLACES.items():
         tilt = _tilt(level[2], side * math.radians(settings["tilt_deg"]))
-        at, q = tilt @ level[0], _quaternion(tilt @ level[1])
+        at, q = tilt @ level[0], quaternion_of(tilt @ level[1])
         divers += (f'[[objects]]\nname = "diver_{name}"\nmodel = "{os.path.join(MODELS, "diver.glb")}"\nclass = "diver"\n'
                    f'clip = "swim"\nclip_offset_s = {settings["clip_s"]!r}\n'
                    f"position_m = [{x + at[0]!r}, {-20 + at[1]!r}, {at[2]!r}]\n"

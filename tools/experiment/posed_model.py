@@ -8,6 +8,8 @@ import struct
 
 import numpy as np
 
+from rotations import matrix
+
 TYPES = {5120: np.int8, 5121: np.uint8, 5122: np.int16, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 
@@ -103,25 +105,9 @@ def _slerp(a, b, part):
     return mixed / np.linalg.norm(mixed)
 
 
-def rotation(x, y, z, w):
-    """3 x 3 of a unit quaternion."""
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
-
-
-def yaw_pitch_roll(yaw_deg, pitch_deg=0.0, roll_deg=0.0):
-    """3 x 3 of a scene's angles: about y, then about the own x, then about the own z."""
-    y, p, r = np.radians([yaw_deg, pitch_deg, roll_deg])
-    about_y = np.array([[np.cos(y), 0, np.sin(y)], [0, 1, 0], [-np.sin(y), 0, np.cos(y)]])
-    about_x = np.array([[1, 0, 0], [0, np.cos(p), -np.sin(p)], [0, np.sin(p), np.cos(p)]])
-    about_z = np.array([[np.cos(r), -np.sin(r), 0], [np.sin(r), np.cos(r), 0], [0, 0, 1]])
-    return about_y @ about_x @ about_z
-
-
 def _matrix(node):
     out = np.eye(4)
-    out[:3, :3] = rotation(*node.get("rotation", (0, 0, 0, 1))) * np.array(node.get("scale", (1, 1, 1)), float)
+    out[:3, :3] = matrix(node.get("rotation", (0, 0, 0, 1))) * np.array(node.get("scale", (1, 1, 1)), float)
     out[:3, 3] = node.get("translation", (0, 0, 0))
     return out
 

@@ -57,10 +57,10 @@ def runs_csv(scenario, results):
     varied = list(scenario.factors) + list(scenario.vary)
     out = io.StringIO()
     table = csv.writer(out, lineterminator="\n")
-    table.writerow(["seed", *varied, *scenario.kind.MEASURES, "failure", "wall_s"])
+    table.writerow(["seed", *varied, *scenario.kind.MEASURES, "failure", "wall_s", "processor_s"])
     for r in results:
         table.writerow([r["seed"], *(r["settings"][k] for k in varied),
-                        *(_cell(r["measures"].get(m)) for m in scenario.kind.MEASURES), r["failure"] or "", r["wall_s"]])
+                        *(_cell(r["measures"].get(m)) for m in scenario.kind.MEASURES), r["failure"] or "", r["wall_s"], r["processor_s"]])
     return out.getvalue()
 
 
@@ -133,16 +133,25 @@ def write(scenario, results, summary, out):
     return note
 
 
-def index(summaries, out):
-    """One page of results over several experiments."""
-    rows = ["<tr><th>experiment</th><th>criterion</th><th>asked</th><th>found</th><th></th></tr>"]
+def index(summaries, failed, missing, out):
+    """One page of results over several experiments. failed: [(experiment, why)]; missing: names not yet run."""
+    rows = ["<tr><th>experiment</th><th>criterion</th><th>asked</th><th>found</th><th></th><th>runs</th><th>one core, s</th></tr>"]
     for s in summaries:
         for i, c in enumerate(s["criteria"]):
-            name = f"<a href=\"{s['experiment']}/report.html\">{s['experiment']}</a>" if i == 0 else ""
-            told = claim(c)
+            first = i == 0
+            name = f"<a href=\"{s['experiment']}/report.html\">{s['experiment']}</a>" if first else ""
             verdict = "holds" if c["holds"] else '<span class="no">does not hold</span>'
-            rows.append(f"<tr><td>{name}</td><td style=\"text-align:left\">{html.escape(told)}</td><td>{limit(c)}</td>"
-                        f"<td>{number(c['found'])}</td><td>{verdict}</td></tr>")
+            count, cost = (f"{s['runs']}", f"{s['processor_s']:.0f}") if first else ("", "")
+            rows.append(f"<tr><td>{name}</td><td style=\"text-align:left\">{html.escape(claim(c))}</td><td>{limit(c)}</td>"
+                        f"<td>{number(c['found'])}</td><td>{verdict}</td><td>{count}</td><td>{cost}</td></tr>")
+    for name, why in failed:
+        rows.append(f"<tr><td>{name}</td><td colspan=\"6\" style=\"text-align:left\"><span class=\"no\">could not be done:</span> "
+                    f"{html.escape(why)}</td></tr>")
+    for name in missing:
+        rows.append(f"<tr><td>{name}</td><td colspan=\"6\" style=\"text-align:left\">not run yet</td></tr>")
+    held = sum(c["holds"] for s in summaries for c in s["criteria"])
+    told = (f"{held} of {sum(len(s['criteria']) for s in summaries)} criteria hold; {sum(s['runs'] for s in summaries)} runs took "
+            f"{sum(s['processor_s'] for s in summaries) / 60:.1f} minutes of one core.")
     text = (f"<!DOCTYPE html><html lang=\"en\"><meta charset=\"utf-8\"><title>Experiments</title><style>{STYLE}</style>"
-            f"<h1>Experiments</h1><table>{''.join(rows)}</table></html>")
+            f"<h1>Experiments</h1><p>{told}</p><table>{''.join(rows)}</table></html>")
     write_file(os.path.join(out, "index.html"), text + "\n")

@@ -7,6 +7,7 @@ import concurrent.futures
 import concurrent.futures.process
 import json
 import os
+import resource
 import signal
 import sys
 import tempfile
@@ -15,13 +16,13 @@ import traceback
 
 from scenario import Failed, Refused
 
-FORMAT = 1
+FORMAT = 2
 
 
 def _one(do, run, program):
     """A worker process: one run. Its failure is a result, not the end of the others."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    begun, folder = time.monotonic(), ""
+    begun, worked, folder = time.monotonic(), _processor_s(), ""
     try:
         with tempfile.TemporaryDirectory(prefix="neritic_experiment_") as folder:
             measures, series = do(run.settings, run.seed, Tools(program, folder))
@@ -34,7 +35,14 @@ def _one(do, run, program):
         failure = f"{type(error).__name__}: {error} ({os.path.basename(place.filename)}:{place.lineno})"
         failure = failure.replace(folder + os.sep, "")  # so that the same cause has the same words
     return {"condition": run.condition, "seed": run.seed, "settings": run.settings, "measures": measures,
-            "failure": failure, "series": series, "wall_s": round(time.monotonic() - begun, 3)}
+            "failure": failure, "series": series, "wall_s": round(time.monotonic() - begun, 3),
+            "processor_s": round(_processor_s() - worked, 3)}
+
+
+def _processor_s():
+    """Of this process and of those that it ran."""
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(u.ru_utime + u.ru_stime for u in used)
 
 
 class Tools:

@@ -13,8 +13,11 @@ import numpy as np
 
 import looking
 from detector import model_of
-from scenario import SHIPPED, Failed, Setting, draw
-from shark_senses import CROP_DEG, DIVER, SEEN, SONAR, Gaze, SonarTrack
+from rotations import matrix
+from scenario import Failed, Setting, draw
+from shark_figures import figures, notes  # noqa: F401: of the kind
+from shark_scene import Judge, scene_of, shark_at
+from shark_senses import DIVER, Gaze, SonarTrack
 
 SETTINGS = {
     "offset_m": Setting(1.0, "the ROV's start beside the line from diver to shark, at its middle", 0.0, 10.0),
@@ -57,82 +60,6 @@ MEASURES = {
     "wrong_words": ("", "how often it named something else before"),
     "look_ms": ("ms", "median of its answers on a thread of its own; by the clock, so it differs from run to run"),
 }
-LINES = ("-", "--", ":", "-.", (0, (1, 1)), (0, (5, 1)))  # of conditions, told apart in grey too
-BESIDE_M, HELD_S, LEAST, MOST = 0.35, 1.0, 0.1, 0.9
-SCENE = """title = "A shark, a diver, an ROV"
-seed = {seed}
-[physics]
-rate_hz = {physics_hz}
-{current}
-{seen}
-[[objects]]
-name = "diver"
-class = "diver"
-shape = "sphere"
-radius_m = 0.05
-position_m = [0, -10, 0]
-inputs = {{ pose = {{ from = "python", hold_s = 3600 }} }}
-[[objects]]
-name = "shark"
-class = "shark"
-{shark_drawn}
-position_m = {shark}
-inputs = {{ pose = {{ from = "python", hold_s = 3600 }} }}
-[[vehicles]]
-name = "rov"
-{rov_drawn}
-dynamics = "{vehicle}"
-navigation = "{navigation}"
-position_m = {rov}
-yaw_deg = {yaw!r}
-mission = {{ hold = "station" }}
-{sonar}"""
-
-
-def _scene_of_enu(p):
-    return [float(p[0]), float(p[2]), -float(p[1])]
-
-
-def _shark_at(s, time):
-    """(place, velocity) of the shark, east, north, up: it nears the diver and circles it at once."""
-    bearing = math.radians(s["shark_bearing_deg"])
-    r = max(1.0, s["shark_range_m"] - s["shark_speed_m_s"] * time)
-    # The angle over time at the speed across: the integral of v / r.
-    fast = s["shark_speed_m_s"]
-    if fast > 1e-9:
-        turned = s["shark_circling_m_s"] / fast * math.log(s["shark_range_m"] / r)
-        turned += s["shark_circling_m_s"] * max(0.0, time - (s["shark_range_m"] - 1.0) / fast) / 1.0
-    else:
-        turned = s["shark_circling_m_s"] * time / r
-    angle = bearing - turned
-    out = np.array([math.sin(angle), math.cos(angle), 0.0])
-    left = np.array([-math.cos(angle), math.sin(angle), 0.0])
-    return DIVER + r * out, -fast * (r > 1.0) * out + s["shark_circling_m_s"] * left
-
-
-def between(rov, diver, shark):
-    """(along, beside): the ROV's projection on the line as a share of it, and its distance from the line in metres."""
-    line = shark - diver
-    along = float((rov - diver) @ line / (line @ line))
-    return along, float(np.linalg.norm(rov - diver - along * line))
-
-
-class Judge:
-    """Whether the shark is blocked, and since when."""
-
-    def __init__(self):
-        self.held_from, self.blocked_s = None, None
-
-    def see(self, time, rov, shark):
-        """(along, beside) at this instant."""
-        along, beside = between(rov, DIVER, shark)
-        if beside <= BESIDE_M and LEAST <= along <= MOST:
-            self.held_from = time if self.held_from is None else self.held_from
-            if self.blocked_s is None and time - self.held_from >= HELD_S - 1e-9:
-                self.blocked_s = self.held_from
-        elif self.blocked_s is None:
-            self.held_from = None
-        return along, beside
 
 
 def _from_recording(s, tools, record, times):
@@ -146,7 +73,7 @@ def _from_recording(s, tools, record, times):
         row = rows.get(round(time, 4))
         if row is None:
             raise Failed(f"the replay's log has no line at {time:g} s")
-        judge.see(time, np.array([float(row["x_m"]), -float(row["z_m"]), float(row["y_m"])]), _shark_at(s, time)[0])
+        judge.see(time, np.array([float(row["x_m"]), -float(row["z_m"]), float(row["y_m"])]), shark_at(s, time)[0])
     return judge.blocked_s
 
 
@@ -158,94 +85,101 @@ def _word_s(s, seed):
     return 0.1 * look + s["detector_latency_s"]
 
 
+class _Flight:
+    """One run: the world, who looks and listens, the judge, and what is told of them."""
+
+    def __init__(self, s, seed, tools):
+        self.s = s
+        self.world = tools.python().open(tools.write("scene.toml", scene_of(s, seed)), seed=seed)
+        self.gaze = Gaze(self.world, s, seed) if s["detector"] != "assumed" else None
+        self.track = SonarTrack(self.world, s) if s["shark_known_by"] == "sonar" else None
+        self.told_s = math.inf if self.gaze else _word_s(s, seed) + s["delay_s"]
+        self.judge, self.in_sight, self.beside_after, self.force = Judge(), [], [], 0.0
+        self.series = {"t": [], "beside": [], "along": []}
+        self.seen_at = []
+
+    def fly(self):
+        s, world = self.s, self.world
+        world["diver"].pose(DIVER)
+        every = max(1, int(round(s["physics_hz"] / s["control_hz"])))
+        # Told control_hz times a second; judged at least 20 times a second.
+        part, next_told = min(every, max(1, int(round(s["physics_hz"] / 20)))), 0
+        while world.time < s["seconds"] - 1e-9:
+            time = world.time
+            shark, speed = shark_at(s, time)
+            heading = math.atan2(speed[1], speed[0]) if np.hypot(*speed[:2]) > 1e-6 else math.atan2(-shark[1], -shark[0])
+            world["shark"].pose(shark, [0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2)], velocity=speed)
+            self._look(time, shark)
+            if world.step >= next_told:
+                next_told = world.step + every
+                self._steer(time, shark, speed)
+            world.tick(part)
+            if self._see():
+                break
+
+    def _look(self, time, shark):
+        if self.gaze and not math.isfinite(self.told_s) and time >= 0.1 * self.gaze.looks - 1e-9 and self.gaze.sees_shark(shark):
+            self.told_s = time + self.s["detector_latency_s"] + self.s["delay_s"]
+
+    def _steer(self, time, shark, speed):
+        """Once the word is out: to the middle of the line, at half the shark's speed, facing the shark."""
+        if time < self.told_s - 1e-9:
+            return
+        at, moves = self.track.estimate(shark) if self.track else (shark, speed)
+        middle = 0.5 * (DIVER + at)
+        self.world["rov"].goto(*middle, math.atan2(at[1] - middle[1], at[0] - middle[0]), velocity=0.5 * moves)
+
+    def _see(self):
+        """Judges this instant; true when the run has told all it can."""
+        truth, time = self.world.truth("rov"), self.world.time
+        shark, _ = shark_at(self.s, time)
+        along, beside = self.judge.see(time, truth.position, shark)
+        self.seen_at.append(time)
+        self.force = max(self.force, float(np.abs(truth.thruster_n).max()))
+        for key, value in (("t", time), ("beside", beside), ("along", along)):
+            self.series[key].append(round(value, 4))
+        if self.judge.held_from is not None:
+            self.in_sight.append(_in_sight(truth, shark))
+            self.beside_after.append(beside)
+        return self.judge.blocked_s is not None and time >= self.judge.blocked_s + 2.0
+
+    def close(self):
+        self.world.close()
+        if self.gaze:
+            self.gaze.close()
+
+    def measures(self):
+        blocked_s = self.judge.blocked_s
+        out = {"blocked": blocked_s is not None, "blocked_in_3_s": blocked_s is not None and blocked_s <= 3.0,
+               "largest_force_n": self.force}
+        if self.gaze:
+            out |= {"looks": self.gaze.looks, "wrong_words": self.gaze.wrong, "look_ms": 1e3 * float(np.median(self.gaze.work_s or [0.0]))}
+        if self.track and self.track.errors:
+            out["track_error_m"] = float(np.sqrt(np.mean(np.square(self.track.errors))))
+        if blocked_s is not None:
+            out |= {"time_to_block_s": blocked_s, "time_of_motion_s": blocked_s - self.told_s,
+                    "shark_in_sonar": float(np.mean(self.in_sight)),
+                    "beside_rms_m": float(np.sqrt(np.mean(np.square(self.beside_after))))}
+        return out
+
+
 def run(s, seed, tools):
-    neritic = tools.python()
-    shark, _ = _shark_at(s, 0.0)
-    bearing = math.radians(s["shark_bearing_deg"])
-    about = math.radians(s["offset_angle_deg"])
-    across = np.array([math.cos(bearing) * math.cos(about), -math.sin(bearing) * math.cos(about), math.sin(about)])
-    rov = 0.5 * (DIVER + shark) + s["offset_m"] * across
-    file = "bluerov2_heavy_survey_dynamics.toml" if s["navigation"] == "measured" else "bluerov2_heavy_dynamics.toml"
-    current = (f'[current]\nkind = "uniform"\nvelocity_m_s = [{s["current_m_s"]!r}, 0, 0]' if s["current_m_s"] else "")
-    # A scene's yaw is to port from north; a bearing is to starboard.
-    looks, sounds = s["detector"] != "assumed", s["shark_known_by"] == "sonar"
-    models = os.path.join(SHIPPED, "..", "models")
-    scene = tools.write("scene.toml", SCENE.format(
-        seen=SEEN.format(fov=CROP_DEG, **s) if looks else "",
-        shark_drawn=f'model = "{models}/shark.glb"\nclip = "swim"' if looks or sounds else 'shape = "sphere"',
-        sonar=SONAR.format(**s) if sounds else "",
-        rov_drawn=f'model = "{models}/rov.glb"' if looks else 'shape = "box"\nsize_m = [0.457, 0.254, 0.575]',
-        seed=seed, physics_hz=s["physics_hz"], current=current, shark=_scene_of_enu(shark), rov=_scene_of_enu(rov),
-        vehicle=os.path.join(SHIPPED, "..", "vehicles", file), navigation=s["navigation"],
-        yaw=-(s["shark_bearing_deg"] + s["heading_deg"])))
-    world = neritic.open(scene, seed=seed)
-    gaze = Gaze(world, s, seed) if looks else None
-    track = SonarTrack(world, s) if sounds else None
-    ship, told_s = world["rov"], math.inf if looks else _word_s(s, seed) + s["delay_s"]
-    every = max(1, int(round(s["physics_hz"] / s["control_hz"])))
-    judge, in_sight, beside_after, force, seen_at = Judge(), [], [], 0.0, []
-    series = {"t": [], "beside": [], "along": []}
-    recording, record = contextlib.ExitStack(), os.path.join(tools.folder, "run")
+    flight = _Flight(s, seed, tools)
+    record = os.path.join(tools.folder, "run")
+    with contextlib.ExitStack() as recording:
+        recording.callback(flight.close)
+        if s["from_recording"]:
+            recording.enter_context(flight.world.record(record))
+        flight.fly()
+    measures = flight.measures()
     if s["from_recording"]:
-        recording.enter_context(world.record(record))
-    world["diver"].pose(DIVER)
-    # Told control_hz times a second; judged at least 20 times a second.
-    part, next_told = min(every, max(1, int(round(s["physics_hz"] / 20)))), 0
-    while world.time < s["seconds"] - 1e-9:
-        time = world.time
-        shark, speed = _shark_at(s, time)
-        heading = math.atan2(speed[1], speed[0]) if np.hypot(*speed[:2]) > 1e-6 else math.atan2(-shark[1], -shark[0])
-        world["shark"].pose(shark, [0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2)], velocity=speed)
-        if looks and not math.isfinite(told_s) and time >= 0.1 * gaze.looks - 1e-9:
-            if gaze.sees_shark(shark):
-                told_s = time + s["detector_latency_s"] + s["delay_s"]
-        if world.step >= next_told:
-            next_told = world.step + every
-            if time >= told_s - 1e-9:
-                at, moves = track.estimate(shark) if sounds else (shark, speed)
-                middle = 0.5 * (DIVER + at)
-                ship.goto(*middle, math.atan2(at[1] - middle[1], at[0] - middle[0]), velocity=0.5 * moves)
-        world.tick(part)
-        truth, time = world.truth("rov"), world.time
-        shark, _ = _shark_at(s, time)
-        along, beside = judge.see(time, truth.position, shark)
-        seen_at.append(time)
-        force = max(force, float(np.abs(truth.thruster_n).max()))
-        series["t"].append(round(time, 4))
-        series["beside"].append(round(beside, 4))
-        series["along"].append(round(along, 4))
-        if judge.held_from is not None:
-            in_sight.append(_in_sight(truth, shark))
-            beside_after.append(beside)
-        if judge.blocked_s is not None and time >= judge.blocked_s + 2.0:
-            break
-    blocked_s = judge.blocked_s
-    recording.close()
-    world.close()
-    looked = {}
-    if looks:
-        gaze.close()
-        looked = {"looks": gaze.looks, "wrong_words": gaze.wrong, "look_ms": 1e3 * float(np.median(gaze.work_s or [0.0]))}
-    if s["from_recording"]:
-        looked["same_from_recording"] = _from_recording(s, tools, record, seen_at) == blocked_s
-    if sounds and track.errors:
-        looked["track_error_m"] = float(np.sqrt(np.mean(np.square(track.errors))))
-    measures = {**looked, "blocked": blocked_s is not None, "blocked_in_3_s": blocked_s is not None and blocked_s <= 3.0,
-                "largest_force_n": force}
-    if blocked_s is not None:
-        measures |= {"time_to_block_s": blocked_s, "time_of_motion_s": blocked_s - told_s,
-                     "shark_in_sonar": float(np.mean(in_sight)),
-                     "beside_rms_m": float(np.sqrt(np.mean(np.square(beside_after))))}
-    return measures, series
+        measures["same_from_recording"] = _from_recording(s, tools, record, flight.seen_at) == flight.judge.blocked_s
+    return measures, flight.series
 
 
 def _in_sight(truth, shark):
     """Whether the shark is in the sonar's wedge: ahead of the ROV, 90 x 28 degrees, to 10 m."""
-    x, y, z, w = truth.orientation
-    turn = np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
-    ahead, left, up = turn.T @ (shark - truth.position)
+    ahead, left, up = matrix(truth.orientation).T @ (shark - truth.position)
     return bool(math.hypot(ahead, left, up) <= 10.0 and abs(math.atan2(left, ahead)) <= math.radians(45)
                 and abs(math.atan2(up, math.hypot(ahead, left))) <= math.radians(14))
 
@@ -258,87 +192,3 @@ def files(settings):
 def check(settings):
     """Refuses a detector that is not there, before anything runs."""
     files(settings)
-
-
-def _paired(results):
-    """(mean time, deviation of the differences by seed) of the first two conditions; None where there are not two."""
-    import summary
-    groups = [{r["seed"]: r["measures"]["time_to_block_s"] for r in group if "time_to_block_s" in r["measures"]}
-              for _, group in summary.by_condition(results)[:2]]
-    seeds = sorted(set(groups[0]) & set(groups[1])) if len(groups) == 2 else []
-    if len(seeds) < 6:
-        return None
-    return float(np.mean(list(groups[0].values()))), float(np.std([groups[1][k] - groups[0][k] for k in seeds], ddof=1))
-
-
-def notes(results):
-    """Lines for the report."""
-    import intervals
-    import summary
-    for condition, group in summary.by_condition(results):
-        times = summary.values_of(group, "time_to_block_s")
-        runs = intervals.runs_to_tell(times) if len(times) >= 6 else None
-        if runs:
-            name = ", ".join(f"{k} {v}" for k, v in condition.items()) or "all runs"
-            yield (f"{name}: {runs} runs a group tell a time to block that is 10 % longer, with a power of 80 % at 5 % (two-sided, "
-                   f"unpaired); by drawing groups of {max(runs, 20)} from these runs the power is "
-                   f"{100 * intervals.power_by_draws(times, max(runs, 20)):.0f} %.")
-    spread = _paired(results)
-    if spread is not None:
-        pairs = math.ceil(((intervals.Z95 + intervals.normal_quantile(0.8)) * spread[1] / (0.1 * spread[0])) ** 2)
-        yield (f"With the same seeds in both conditions, by the spread of the differences between the first two, {max(2, pairs)} "
-               "pairs tell it: compare conditions by factors, not by two experiments.")
-
-
-def figures(scenario, results, style):
-    done = [r for r in results if r["series"]]
-    if not done:
-        return
-    groups = {}
-    for r in done:
-        groups.setdefault(", ".join(f"{k} {v}" for k, v in r["condition"].items()) or "all runs", []).append(r)
-    fig = style.figure(900, 640)
-    top = style.area(fig, 70, 60, 870, 320)
-    for i, (name, runs) in enumerate(list(groups.items())[:6]):
-        for k, r in enumerate(runs[:30]):
-            top.plot(r["series"]["t"], r["series"]["beside"], color=style.color(i), lw=0.8, alpha=0.6, ls=LINES[i],
-                     label=name if k == 0 else None)
-    top.axhline(BESIDE_M, color=style.INK, lw=0.9, ls="--")
-    top.set_xlabel("time since the gaze met the shark, s")
-    top.set_ylabel("beside the line, m")
-    style.title(top, "Distance of the ROV from the line between diver and shark")
-    style.legend(top)
-    left = style.area(fig, 70, 400, 450, 590)
-    for i, (name, runs) in enumerate(list(groups.items())[:6]):
-        times = sorted(r["measures"]["time_to_block_s"] for r in runs if "time_to_block_s" in r["measures"])
-        if times:
-            left.step([0, *times], np.arange(len(times) + 1) / len(runs), where="post", color=style.color(i), lw=1.4,
-                      ls=LINES[i])
-    left.set_xlim(0, None)
-    left.set_ylim(0, 1.03)
-    left.set_xlabel("time to block, s")
-    style.title(left, "Share of the runs that blocked by then")
-    right = style.area(fig, 520, 400, 870, 590)
-    import intervals
-    for i, (name, runs) in enumerate(list(groups.items())[:6]):
-        times = [r["measures"]["time_to_block_s"] for r in runs if "time_to_block_s" in r["measures"]]
-        if len(times) >= 6:
-            n = np.unique(np.geomspace(2, 2000, 120).astype(int))
-            right.plot(n, [intervals.power_of(times, int(k)) for k in n], color=style.color(i), lw=1.4, ls=LINES[i])
-            drawn = [20, 60, 200, 600, 2000]
-            right.plot(drawn, [intervals.power_by_draws(times, k) for k in drawn], "o", color=style.color(i), ms=4.5,
-                       mec=style.INK, mew=0.5)
-    spread = _paired(results)
-    if spread is not None:
-        mean, deviation = spread
-        n = np.unique(np.geomspace(2, 2000, 120).astype(int))
-        right.plot(n, [intervals.normal_share(0.1 * mean * math.sqrt(k) / max(deviation, 1e-12) - intervals.Z95) for k in n],
-                   color=style.INK, lw=1.2, ls=":")
-        right.text(0.35, 0.06, "dotted: the same seeds in both groups", transform=right.transAxes, size=7.5)
-    right.set_xscale("log")
-    style.plain_log(right.xaxis)
-    right.axhline(0.8, color=style.INK, lw=0.9, ls="--")
-    right.set_ylim(0, 1.03)
-    right.set_xlabel("runs a group")
-    style.title(right, "Power to tell 10 % more time to block (dots: by draws)", 8.5)
-    yield "shark.png", "The ROV's distance from the line over time, times to block, and the power of so many runs", fig

@@ -4,8 +4,8 @@ import math
 import numpy as np
 
 import looking
-from crops import rotation
 from detector import model_of
+from rotations import quaternion
 from scenario import draw
 
 DIVER = np.array([0.0, 0.0, -10.0])  # east, north, up
@@ -49,7 +49,7 @@ class Gaze:
         line = shark - DIVER
         yaw, up = math.atan2(line[1], line[0]), math.atan2(line[2], math.hypot(line[0], line[1]))
         eye = DIVER + EYE_M * line / np.linalg.norm(line)
-        self.world["gaze"].pose(eye, rotation(yaw + off[0], -(up + off[1]), 0.0), velocity=[0, 0, 0])
+        self.world["gaze"].pose(eye, quaternion(yaw + off[0], -(up + off[1]), 0.0), velocity=[0, 0, 0])
         self.world.tick(max(1, round(1 / 60 / self.world.step_s)))
         crop = self.world.observe().get("gaze_crop/color")
         self.looks += 1

@@ -4,19 +4,19 @@ A scene is a bottom, a device (frequency, beam, pulse, noise, speckle) and a ran
 tyre or nothing but stones are in it in random poses. Devices and bottoms of the split "test" never occur in "train". A crop
 whose thing is the loudest in fewer than LEAST_BINS bins is not made.
 """
-import json
 import math
 import os
-import struct
 
 import numpy as np
 
-from crops import ASSETS, FAR, THING, rotation, some_of
+from crops import ASSETS, FAR, THING, some_of
+from rotations import quaternion
 
 CLASSES = ["nothing", "diver", "rov", "mine", "tyre"]
 LABELS = {"diver": 4, "rov": 5, "mine": 12, "tyre": 11}
 SIDE, LEAST_BINS, WINDOW_M = 64, 24, 4.0
 SPLITS = {"train": {"bottoms": ["sand", "gravel", "mud"], "khz": [550, 750, 1200], "beam": [0.8, 1.0, 1.4]},
+          "choose": {"bottoms": ["sand", "mud"], "khz": [650], "beam": [0.9, 1.3]},
           "test": {"bottoms": ["rock", "silt"], "khz": [900], "beam": [0.6, 1.2]}}
 HEAD = """title = "Sonar crops"
 seed = {seed}
@@ -60,61 +60,6 @@ scatter = {{ count = 30, area_m = [-14, -14, 14, 14], on = "floor", scale = [0.1
 """
 
 
-def torus(path, ring_m, tube_m, around=40, across=16):
-    """A tyre as .glb: the ring lies level, about y."""
-    a, b = np.meshgrid(np.arange(around) * 2 * math.pi / around, np.arange(across) * 2 * math.pi / across, indexing="ij")
-    out = np.stack([np.cos(b) * np.cos(a), 1.25 * np.sin(b), np.cos(b) * np.sin(a)], -1)
-    points = np.stack([ring_m * np.cos(a), 0 * a, ring_m * np.sin(a)], -1) + tube_m * out
-    i, k = np.meshgrid(np.arange(around), np.arange(across), indexing="ij")
-    at = [(i + di) % around * across + (k + dk) % across for di, dk in ((0, 0), (0, 1), (1, 1), (1, 0))]
-    corners = np.stack([np.stack([at[0], at[1], at[2]], -1), np.stack([at[0], at[2], at[3]], -1)], 2)
-    write_glb(path, points.reshape(-1, 3), (out / np.linalg.norm(out, axis=-1, keepdims=True)).reshape(-1, 3), corners.reshape(-1))
-
-
-def mine(path, radius_m, horns=11):
-    """A moored contact mine as .glb: a ball with horns above and around."""
-    points, normals, corners = [], [], []
-
-    def ball(middle, radius, n):
-        v, u = np.meshgrid(np.linspace(0, math.pi, n + 1), np.arange(2 * n) * math.pi / n, indexing="ij")
-        out = np.stack([np.sin(v) * np.cos(u), np.cos(v), np.sin(v) * np.sin(u)], -1)
-        first = sum(len(p) for p in points)
-        i, k = np.meshgrid(np.arange(n), np.arange(2 * n), indexing="ij")
-        at = [first + (i + di) * 2 * n + (k + dk) % (2 * n) for di, dk in ((0, 0), (0, 1), (1, 1), (1, 0))]
-        points.append((middle + radius * out).reshape(-1, 3))
-        normals.append(out.reshape(-1, 3))
-        corners.append(np.stack([np.stack([at[0], at[1], at[2]], -1), np.stack([at[0], at[2], at[3]], -1)], 2).reshape(-1))
-
-    ball(np.zeros(3), radius_m, 24)
-    for i in range(horns):
-        up = 1.0 - 1.3 * i / horns  # evenly by the golden angle
-        angle, level = i * 2.399963, math.sqrt(max(0.0, 1 - up * up))
-        way = np.array([level * math.cos(angle), up, level * math.sin(angle)])
-        for far in (1.04, 1.12, 1.2):
-            ball(way * radius_m * far, 0.035, 4)
-    write_glb(path, np.concatenate(points), np.concatenate(normals), np.concatenate(corners))
-
-
-def write_glb(path, points, normals, corners):
-    """One mesh of triangles as binary glTF 2.0."""
-    parts = [np.asarray(points, "<f4").tobytes(), np.asarray(normals, "<f4").tobytes(), np.asarray(corners, "<u4").tobytes()]
-    starts = np.cumsum([0] + [len(p) for p in parts]).tolist()
-    told = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-            "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 2}]}],
-            "buffers": [{"byteLength": starts[-1]}],
-            "bufferViews": [{"buffer": 0, "byteOffset": s, "byteLength": len(p)} for s, p in zip(starts, parts)],
-            "accessors": [{"bufferView": 0, "componentType": 5126, "count": len(points), "type": "VEC3",
-                           "min": np.float32(points).min(axis=0).tolist(), "max": np.float32(points).max(axis=0).tolist()},
-                          {"bufferView": 1, "componentType": 5126, "count": len(points), "type": "VEC3"},
-                          {"bufferView": 2, "componentType": 5125, "count": len(corners), "type": "SCALAR"}]}
-    text = json.dumps(told).encode()
-    text += b" " * (-len(text) % 4)
-    binary = b"".join(parts)
-    with open(path, "wb") as file:
-        file.write(struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(text) + 8 + len(binary)))
-        file.write(struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary)
-
-
 def picture(echoes, span_db=45.0):
     """Levels 0 to 255 of a sonar's intensities: the loudest bin is white, span_db below it is black."""
     db = 10 * np.log10(np.maximum(echoes, 1e-30) / max(float(echoes.max()), 1e-30))
@@ -124,8 +69,9 @@ def picture(echoes, span_db=45.0):
 class Maker:
     """Sonar crops of one seed's scene, as crops.Maker."""
 
-    def __init__(self, tools, split, seed, side=SIDE):
-        self.rng = rng = np.random.Generator(np.random.Philox(key=seed + (1 << 41 if split == "test" else 1 << 42)))
+    def __init__(self, tools, split, seed):
+        first = {"train": 1 << 42, "choose": 1 << 43, "test": 1 << 41}[split]
+        self.rng = rng = np.random.Generator(np.random.Philox(key=seed + first))
         of = SPLITS[split]
         self.water = f"{rng.choice(of['khz'])} kHz"
         self.place = str(rng.choice(of["bottoms"]))
@@ -139,6 +85,8 @@ class Maker:
             x, z = np.meshgrid(np.arange(n) * 0.25, np.arange(n) * 0.25)
             heights += rough / math.sqrt(k) / 3 * np.sin(k * (x * math.cos(way) + z * math.sin(way)) + phase)
         np.save(os.path.join(tools.folder, "floor.npy"), (heights - 12.0).astype(np.float32))
+        from sonar_targets import mine, torus  # which needs Pillow
+
         torus(os.path.join(tools.folder, "tyre.glb"), rng.uniform(0.22, 0.30), rng.uniform(0.08, 0.11))
         mine(os.path.join(tools.folder, "mine.glb"), rng.uniform(0.35, 0.5))
         hertz = float(self.water.split()[0]) * 1e3
@@ -146,12 +94,12 @@ class Maker:
                            band=rng.uniform(20e3, 60e3), beam=rng.choice(of["beam"]), noise=rng.uniform(60, 95),
                            shape=rng.uniform(1.0, 10.0), bottom=self.place, assets=ASSETS)
         folder = tools.folder
-        for name, model, kind, more in (("diver", f"{ASSETS}/models/diver.glb", "diver", 'clip = "swim"\nclip_rate = 37.3\nmaterial = "neoprene"'),
-                                        ("rov", f"{ASSETS}/models/rov.glb", "rov", 'material = "aluminium"'),
-                                        ("mine", f"{folder}/mine.glb", "target", 'material = "steel"'),
-                                        ("tyre", f"{folder}/tyre.glb", "structure", 'material = "rubber"'),
-                                        ("stone", f"{ASSETS}/models/rocks.glb", "rock", 'node = "rock_0"\nscale = 0.5\nmaterial = "rock"')):
-            text += THING.replace("{assets}/models/{model}", "{model}").format(name=name, model=model, kind=kind, more=more)
+        for name, kind, drawn in (("diver", "diver", f'model = "{ASSETS}/models/diver.glb"\nclip = "swim"\nclip_rate = 37.3\nmaterial = "neoprene"'),
+                                  ("rov", "rov", f'model = "{ASSETS}/models/rov.glb"\nmaterial = "aluminium"'),
+                                  ("mine", "target", f'model = "{folder}/mine.glb"\nmaterial = "steel"'),
+                                  ("tyre", "structure", f'model = "{folder}/tyre.glb"\nmaterial = "rubber"'),
+                                  ("stone", "rock", f'model = "{ASSETS}/models/rocks.glb"\nnode = "rock_0"\nscale = 0.5\nmaterial = "rock"')):
+            text += THING.format(name=name, kind=kind, drawn=drawn)
         self.world = tools.python().open(tools.write(f"sonar_{split}_{seed}.toml", text), seed=seed)
         self.world.images("eye_crop/echoes", "eye_crop/echo_labels")
         self.things = ["diver", "rov", "mine", "tyre", "stone"]
@@ -160,7 +108,7 @@ class Maker:
         self.world.close()
 
     def one(self, name):
-        """(picture [64, 64], what it is told of), or None where the thing cannot be heard."""
+        """(picture [64, 64], range in metres), or None where the thing cannot be heard."""
         rng, world = self.rng, self.world
         yaw, down = rng.uniform(-math.pi, math.pi), rng.uniform(0.06, 0.35)
         far = self.near + WINDOW_M * rng.uniform(0.25, 0.75)
@@ -176,12 +124,12 @@ class Maker:
                     "diver": (rng.uniform(0.9, 1.75) if rng.random() < 0.7 else rng.uniform(-0.2, 0.4), 0.3)}[name]
             if name == "tyre" and abs(turn[0]) > 0.3:
                 spot[2] += 0.2  # it leans
-            poses[name] = (spot, rotation(rng.uniform(-math.pi, math.pi), turn[0], rng.normal(0, turn[1])))
+            poses[name] = (spot, quaternion(rng.uniform(-math.pi, math.pi), turn[0], rng.normal(0, turn[1])))
         if rng.random() < (0.25 if name != "nothing" else 0.6):
             side = rng.uniform(-0.4, 0.4) * self.azimuth
             at = eye + (self.near + WINDOW_M * rng.uniform(0.1, 0.9)) * np.array([math.cos(yaw + side), math.sin(yaw + side), 0])
-            poses["stone"] = (np.array([at[0], at[1], -12.0]), rotation(rng.uniform(-math.pi, math.pi), 0.0, 0.0))
-        world["eye"].pose(eye, rotation(yaw, down, rng.normal(0, 0.03)), velocity=[0, 0, 0])
+            poses["stone"] = (np.array([at[0], at[1], -12.0]), quaternion(rng.uniform(-math.pi, math.pi), 0.0, 0.0))
+        world["eye"].pose(eye, quaternion(yaw, down, rng.normal(0, 0.03)), velocity=[0, 0, 0])
         for i, thing in enumerate(self.things):
             at, q = poses.get(thing, ([FAR[0] + 10 * i, FAR[1], FAR[2]], [0, 0, 0, 1]))
             world[thing].pose(at, q, velocity=[0, 0, 0])
@@ -189,7 +137,7 @@ class Maker:
         echoes, labels = np.array(seen["eye_crop/echoes"].pixels), np.array(seen["eye_crop/echo_labels"].pixels)
         if name != "nothing" and np.count_nonzero(labels == LABELS[name]) < LEAST_BINS:
             return None
-        return picture(echoes), {"range_m": far}
+        return picture(echoes), far
 
     def some(self, each):
-        return some_of(self, CLASSES, each)
+        return some_of(self.one, CLASSES, each)

@@ -49,7 +49,8 @@ def summarise(scenario, results):
                            "failures": dict(causes.most_common()), "measures": measures})
     criteria = [_judge(scenario, results, c) for c in scenario.criteria]
     return {"experiment": scenario.name, "title": scenario.title, "about": scenario.about, "kind": scenario.kind_name,
-            "seed": scenario.seed, "runs": len(results), "failed": sum(1 for r in results if r["failure"]),
+            "seed": scenario.seed, "runs": len(results),
+            "processor_s": round(sum(r["processor_s"] for r in results), 1), "failed": sum(1 for r in results if r["failure"]),
             "settings": scenario.settings, "vary": scenario.vary, "factors": scenario.factors,
             "conditions": conditions, "criteria": criteria, "passed": all(c["holds"] for c in criteria)}
 

@@ -1,10 +1,12 @@
 """Makes a detector's weights again: `neritic experiment train_camera --out DIR` (or train_sonar). Debian's PyTorch, on the
 processor; everything random follows from --seed, and the number of threads is fixed, so the same machine gives the same bits.
 
-Crops come from --runs scenes of the split "train"; a tenth of them choose the best pass and the temperature that makes the
-shares true (Guo et al. 2017). Scenes of the split "test" are never opened here. DIR gets NAME.onnx, NAME.json.
+Crops come from --runs scenes of the split "train" and are varied anew in each pass (variations.py). A tenth as many scenes of
+the split "choose", in places that training has not, choose the best pass and the temperature that makes the shares true
+(Guo et al. 2017). Scenes of the split "test" are never opened here. DIR gets NAME.onnx, NAME.json.
 """
 import concurrent.futures
+import importlib
 import json
 import os
 import tempfile
@@ -12,57 +14,74 @@ import tempfile
 import numpy as np
 
 import looking
+import variations
+from crops import some_of
 from runner import Tools
 from scenario import Failed, Refused
 
-EACH = 20  # crops of a class and a scene
-PASSES, BATCH, THREADS = 18, 64, 2
+EACH, EACH_CHOOSE = 12, 10  # crops of a class and a scene
+STEPS, BATCH, THREADS, LOOKS, SCENES = 1600, 64, 1, 8, 60
+LEAST_SCENES = 10
 
 
-def _scene(maker, program, seed, each):
+def _scene(name, program, split, seed, each):
+    """A worker process; name: of the maker's module."""
+    maker = importlib.import_module(name)
     with tempfile.TemporaryDirectory(prefix="neritic_crops_") as folder:
-        made = maker(Tools(program, folder), "train", seed)
+        tools = Tools(program, folder)
         try:
-            return made.some(each)
-        finally:
+            made = maker.Maker(tools, split, seed, **(getattr(maker, "LESSON", {}) if split == "train" else {}))
+            lesson = getattr(made, "lesson", made.one) if split == "train" else made.one
+            found = some_of(lesson, maker.CLASSES, each)
             made.close()
+        except Exception as error:  # of a class that the parent process may not know
+            raise Failed(f"scene {seed} of {split}: {error}") from None
+    return found
 
 
-def gather(maker, program, scenes, seed, workers, told):
-    """[(pixels, classes)] a scene, in order. A folder of results is not kept: it takes minutes to make again."""
+def gather(maker, program, split, scenes, seed, each, workers, told):
+    """(pictures, classes) of all scenes, in order. They are not kept: minutes make them again."""
     with concurrent.futures.ProcessPoolExecutor(max(1, workers)) as pool:
-        waiting = [pool.submit(_scene, maker, program, seed + i, EACH) for i in range(scenes)]
+        waiting = [pool.submit(_scene, maker.__name__, program, split, seed + i, each) for i in range(scenes)]
         out = []
         for i, one in enumerate(waiting):
             out.append(one.result())
             if told and (i + 1) % 10 == 0:
-                print(f"{i + 1} of {scenes} scenes", flush=True)
-    return out
+                print(f"{split}: {i + 1} of {scenes} scenes", flush=True)
+    return tuple(np.concatenate([made[i] for made in out]) for i in (0, 1))
 
 
 def network(torch, channels, classes):
-    """Four convolutions, then the mean of each map: 47 000 weights."""
-    nn, w = torch.nn, 16
+    """A residual network of 67 000 weights: 64 x 64 to 4 x 4 maps, then the mean and the largest of each map."""
+    nn = torch.nn
 
     def block(a, b, stride):
-        return [nn.Conv2d(a, b, 3, stride, 1, bias=False), nn.BatchNorm2d(b), nn.ReLU()]
+        return nn.Sequential(nn.Conv2d(a, b, 3, stride, 1, bias=False), nn.BatchNorm2d(b), nn.ReLU())
+
+    class Residual(nn.Module):
+        def __init__(self, n):
+            super().__init__()
+            self.one, self.two = block(n, n, 1), nn.Sequential(nn.Conv2d(n, n, 3, 1, 1, bias=False), nn.BatchNorm2d(n))
+
+        def forward(self, x):
+            return torch.relu(x + self.two(self.one(x)))
 
     class Net(nn.Module):
         def __init__(self):
             super().__init__()
-            self.maps = nn.Sequential(*block(channels, w, 2), nn.MaxPool2d(2), *block(w, 2 * w, 1),
-                                      *block(2 * w, 3 * w, 2), *block(3 * w, 4 * w, 1))
-            self.last = nn.Linear(4 * w, classes)
-            self.mean = nn.AvgPool2d(8)
+            self.maps = nn.Sequential(block(channels, 16, 2), block(16, 24, 2), block(24, 40, 2), Residual(40), block(40, 64, 2))
+            self.mean, self.most, self.drop = nn.AvgPool2d(4), nn.MaxPool2d(4), nn.Dropout(0.2)
+            self.last = nn.Linear(128, classes)
 
         def forward(self, x):
-            return self.last(self.mean(self.maps(x)).flatten(1))
+            x = self.maps(x)
+            return self.last(self.drop(torch.cat([self.mean(x), self.most(x)], 1).flatten(1)))
 
     return Net()
 
 
-def _blobs(pixels):
-    return np.stack([looking.normalised(p).transpose(2, 0, 1) for p in pixels])
+def _blobs(pictures):
+    return np.stack([looking.normalised(p).transpose(2, 0, 1) for p in pictures])
 
 
 def train(name, maker, classes, channels, program, scenes, seed, workers, out, quiet):
@@ -70,57 +89,60 @@ def train(name, maker, classes, channels, program, scenes, seed, workers, out, q
         import torch
     except ModuleNotFoundError:
         raise Failed("train: no PyTorch here; tools/setup detector installs python3-torch") from None
-    torch.manual_seed(seed)
-    torch.set_num_threads(THREADS)
-    torch.use_deterministic_algorithms(True)
-    scenes = 80 if scenes is None else scenes
-    if scenes < 10:
-        raise Refused(f"--runs: found {scenes}; accepted: 10 scenes or more, to learn from")
-    made = gather(maker, program, scenes, 1000 * seed, workers, not quiet)
-    kept = scenes // 10
-    x, y = (np.concatenate([m[i] for m in made[kept:]]) for i in (0, 1))
-    xv, yv = (np.concatenate([m[i] for m in made[:kept]]) for i in (0, 1))
+    scenes = SCENES if scenes is None else scenes
+    if scenes < LEAST_SCENES:
+        raise Refused(f"--runs: found {scenes}; accepted: {LEAST_SCENES} scenes or more, to learn from")
+    x, y = gather(maker, program, "train", scenes, 1000 * seed, EACH, workers, not quiet)
+    xv, yv = gather(maker, program, "choose", max(3, scenes // 10), 1000 * seed, EACH_CHOOSE, workers, not quiet)
     if not quiet:
         print(f"{len(y)} crops to learn from, {len(yv)} to choose by: {np.bincount(y, minlength=len(classes)).tolist()}", flush=True)
-    x, y, xv, yv = torch.tensor(_blobs(x)), torch.tensor(y), torch.tensor(_blobs(xv)), torch.tensor(yv)
-    x, xv = (t.to(memory_format=torch.channels_last) for t in (x, xv))  # four times as fast
-    net = network(torch, channels, len(classes)).to(memory_format=torch.channels_last)
-    steps = PASSES * (len(y) // BATCH)
-    optimiser = torch.optim.AdamW(net.parameters(), lr=3e-3, weight_decay=2e-2)
-    rate = torch.optim.lr_scheduler.OneCycleLR(optimiser, max_lr=6e-3, total_steps=steps)
-    loss_of = torch.nn.CrossEntropyLoss(label_smoothing=0.05)
-    generator = torch.Generator().manual_seed(seed)
-    best, best_state = -1.0, None
-    for turn in range(PASSES):
-        net.train()
-        order = torch.randperm(len(y), generator=generator)
-        for i in range(len(y) // BATCH):
-            of = order[i * BATCH:(i + 1) * BATCH]
-            batch = _varied(torch, x[of], generator)
-            optimiser.zero_grad()
-            loss_of(net(batch), y[of]).backward()
-            optimiser.step()
-            rate.step()
-        share = float((_logits(torch, net, xv).argmax(1) == yv).float().mean())
-        if share >= best:
-            best, best_state = share, {k: v.clone() for k, v in net.state_dict().items()}
-        if not quiet and (turn + 1) % 3 == 0:
-            print(f"pass {turn + 1} of {PASSES}: {100 * share:.1f} % of the crops kept aside", flush=True)
-    net.load_state_dict(best_state)
-    temperature = _temperature(torch, _logits(torch, net, xv), yv)
-    with torch.no_grad():  # into the last layer, so that the file's shares are calibrated
-        net.last.weight /= temperature
-        net.last.bias /= temperature
-    _export(torch, torch.nn.Sequential(net, torch.nn.Softmax(1)).eval(), name, channels, classes, seed, scenes, best, out)
+    net, best = fit(torch, (x, y), (xv, yv), channels, classes, seed, quiet)
+    about = {"kind": "classifier", "classes": classes, "side": 64, "channels": channels, "normalise": "crop",
+             "made_by": f"neritic experiment train_{name} --runs {scenes} --seed {seed}",
+             "share_of_crops_to_choose_by": round(best, 4)}
+    _export(torch, torch.nn.Sequential(net, torch.nn.Softmax(1)).eval(), name, about, out)
     return best
 
 
-def _varied(torch, batch, generator):
-    """Half of the batch mirrored, and shifted by up to 6 pixels: light is taken out by the reader already."""
-    if torch.rand(1, generator=generator).item() < 0.5:
-        batch = batch.flip(3)
-    down, right = (int(torch.randint(-6, 7, (1,), generator=generator)) for _ in range(2))
-    return torch.roll(batch, (down, right), (2, 3))
+def fit(torch, lessons, chosen_by, channels, classes, seed, quiet):
+    """(network of calibrated logits, share of the crops to choose by that it names rightly)."""
+    torch.manual_seed(seed)
+    torch.set_num_threads(THREADS)
+    torch.use_deterministic_algorithms(True)
+    net = network(torch, channels, len(classes)).to(memory_format=torch.channels_last)
+    seen = torch.tensor(_blobs(chosen_by[0])).to(memory_format=torch.channels_last), torch.tensor(chosen_by[1])
+    best = _learn(torch, net, variations.of(torch, *lessons, seed), seen, quiet)
+    temperature = _temperature(torch, _logits(torch, net, seen[0]), seen[1])
+    with torch.no_grad():  # into the last layer, so that the file's shares are calibrated
+        net.last.weight /= temperature
+        net.last.bias /= temperature
+    return net, best
+
+
+def _learn(torch, net, batches, seen, quiet):
+    """Leaves the best of LOOKS passes in net; returns the share of the crops to choose by that it names rightly."""
+    optimiser = torch.optim.AdamW(net.parameters(), lr=1e-3, weight_decay=2e-2)
+    rate = torch.optim.lr_scheduler.OneCycleLR(optimiser, max_lr=5e-3, total_steps=STEPS)
+    loss_of = torch.nn.CrossEntropyLoss(label_smoothing=0.05)
+    best, best_state = -1.0, None
+    with concurrent.futures.ThreadPoolExecutor(1) as ahead:  # the next batch while the network learns
+        waiting = ahead.submit(batches, BATCH)
+        for step in range(STEPS):
+            net.train()
+            x, y = waiting.result()
+            waiting = ahead.submit(batches, BATCH)
+            optimiser.zero_grad()
+            loss_of(net(x), y).backward()
+            optimiser.step()
+            rate.step()
+            if (step + 1) % (STEPS // LOOKS) == 0:
+                share = float((_logits(torch, net, seen[0]).argmax(1) == seen[1]).float().mean())
+                if share >= best:
+                    best, best_state = share, {k: v.clone() for k, v in net.state_dict().items()}
+                if not quiet:
+                    print(f"step {step + 1} of {STEPS}: {100 * share:.1f} % of the crops to choose by", flush=True)
+    net.load_state_dict(best_state)
+    return best
 
 
 def _logits(torch, net, x):
@@ -135,15 +157,12 @@ def _temperature(torch, logits, y):
     return float(min(tried, key=lambda t: float(torch.nn.functional.cross_entropy(logits / t, y))))
 
 
-def _export(torch, model, name, channels, classes, seed, scenes, share, out):
-    os.makedirs(out, exist_ok=True)
-    path = os.path.join(out, name + ".onnx")
-    torch.onnx.export(model.to(memory_format=torch.contiguous_format), torch.zeros(1, channels, 64, 64), path + ".tmp", opset_version=11,
-                      input_names=["crop"], output_names=["shares"])
-    about = {"kind": "classifier", "classes": classes, "side": 64, "normalise": "crop",
-             "made_by": f"neritic experiment train_{name} --runs {scenes} --seed {seed}",
-             "share_of_crops_kept_aside": round(share, 4)}
-    with open(os.path.join(out, name + ".json.tmp"), "w", encoding="utf-8") as file:
+def _export(torch, model, name, about, out):
+    """Both files, each whole or not at all."""
+    path = os.path.join(out, name)
+    torch.onnx.export(model.to(memory_format=torch.contiguous_format), torch.zeros(1, about["channels"], 64, 64), path + ".onnx.tmp",
+                      opset_version=11, input_names=["crop"], output_names=["shares"])
+    with open(path + ".json.tmp", "w", encoding="utf-8") as file:
         file.write(json.dumps(about, indent=2) + "\n")
     for end in (".onnx", ".json"):
-        os.replace(os.path.join(out, name + end + ".tmp"), os.path.join(out, name + end))
+        os.replace(path + end + ".tmp", path + end)
