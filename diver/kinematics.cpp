@@ -6,12 +6,6 @@
 namespace neritic::diver {
 namespace {
 
-Quat about(int axis, double angle_rad) {
-  Vec3 v(0.0);
-  v[axis] = std::sin(0.5 * angle_rad);
-  return {std::cos(0.5 * angle_rad), v.x, v.y, v.z};
-}
-
 // The part of a joint's rotation in the body's middle plane.
 Quat in_plane(const Quat& q) {
   const double length = std::hypot(q.w, q.y);
@@ -19,6 +13,12 @@ Quat in_plane(const Quat& q) {
 }
 
 }  // namespace
+
+Quat about(int axis, double angle_rad) {
+  Vec3 v(0.0);
+  v[axis] = std::sin(0.5 * angle_rad);
+  return {std::cos(0.5 * angle_rad), v.x, v.y, v.z};
+}
 
 Posture posture_of(const Body& body, const JointRotations& joints, const JointRates& rates) {
   Posture out;

@@ -26,6 +26,9 @@ JointAngles angles_of(const JointRotations& rotations);
 // From every segment's attitude in any common axes, as a motion suit says them.
 JointRotations rotations_of(const std::array<Quat, kSegments>& common_from_segment);
 
+// A turn about one of the axes, 0 to 2.
+Quat about(int axis, double angle_rad);
+
 // Left and right exchanged.
 JointRotations mirrored(const JointRotations& rotations);
 

@@ -15,12 +15,6 @@ struct Arm {
 constexpr std::array<Arm, 2> kArms{
     {{kLeftUpperArm, kLeftForearm, kLeftHand}, {kRightUpperArm, kRightForearm, kRightHand}}};
 
-Quat about(int axis, double angle_rad) {
-  Vec3 v(0.0);
-  v[axis] = std::sin(0.5 * angle_rad);
-  return {std::cos(0.5 * angle_rad), v.x, v.y, v.z};
-}
-
 // The shortest turn from one unit vector to another.
 Quat turn_between(const Vec3& from, const Vec3& to) {
   const Vec3 axis = glm::cross(from, to);

@@ -35,10 +35,6 @@ std::uint64_t patience(double rate_hz) {
   return static_cast<std::uint64_t>(std::max(kLeastPatience, std::ceil(kPatience_s * rate_hz)));
 }
 
-bool within(const Vec3& v, double most) {
-  return is_finite(v) && glm::length(v) <= most;
-}
-
 // Whether there is a reading that was not used yet; it is then.
 template <class Value>
 bool fresh(const Reading<Value>& reading, std::uint64_t& used) {
@@ -109,7 +105,7 @@ void correct_by_dvl(const NavigationModel& model, const DvlReading& reading, Cor
 void correct_by_fix(const NavigationModel& model, const UsblReading& reading, double age_s,
                     Corrections& out, const NavigationState& state) {
   if (reading.heard == 0) return;
-  if (out.refuse(Aid::kUsbl, within(reading.position_ned_m, kMostFix_m))) return;
+  if (out.refuse(Aid::kUsbl, is_within(reading.position_ned_m, kMostFix_m))) return;
   out.prepare();
   out.apply(Aid::kUsbl, model.usbl->rate_hz, fix_measurement(model, state, reading, age_s));
 }
@@ -171,8 +167,8 @@ NavigationState start_navigation(const NavigationModel& model, const SensorReadi
   NavigationState state;
   state.time_s = state.imu_s = time_s;
   const ImuReading first = in_body(model, readings.imu.value);
-  const bool felt = readings.imu.count > 0 && within(first.specific_force_m_s2, kMostForce_m_s2) &&
-                    within(first.angular_rad_s, kMostTurning_rad_s);
+  const bool felt = readings.imu.count > 0 && is_within(first.specific_force_m_s2, kMostForce_m_s2) &&
+                    is_within(first.angular_rad_s, kMostTurning_rad_s);
   if (felt) state.imu = first;
   state.imu_used = readings.imu.count;
   // Groves 2013, eq. 5.101: roll and pitch of a body that feels gravity alone.
@@ -212,8 +208,8 @@ void update_navigation(const NavigationModel& model, const SensorReadings& readi
   if (readings.imu.count != state.imu_used) {
     state.imu_used = readings.imu.count;
     const ImuReading next = in_body(model, readings.imu.value);
-    const bool good = within(next.specific_force_m_s2, kMostForce_m_s2) &&
-                      within(next.angular_rad_s, kMostTurning_rad_s);
+    const bool good = is_within(next.specific_force_m_s2, kMostForce_m_s2) &&
+                      is_within(next.angular_rad_s, kMostTurning_rad_s);
     if (good) {
       // After a silence the last reading says nothing of the time between.
       if (time_s - state.imu_s > 2.0 * kHeldPeriods / model.imu.rate_hz) {

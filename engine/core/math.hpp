@@ -82,5 +82,9 @@ FrustumTangents tangents_from_fov(double vertical_fov_rad, double aspect);
 inline bool is_finite(const Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
+// Finite, and at most so long.
+inline bool is_within(const Vec3& v, double most) {
+  return is_finite(v) && glm::length(v) <= most;
+}
 
 }  // namespace neritic

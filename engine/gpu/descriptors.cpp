@@ -62,6 +62,8 @@ Result<SetLayout> SetLayout::create(const Device& device, const std::string& nam
   info.pBindings = rows.data();
   SetLayout layout;
   layout.device_ = device.handle();
+  layout.bindings_.assign(bindings.begin(), bindings.end());
+  layout.stages_ = stages;
   NERITIC_TRY_VK("vkCreateDescriptorSetLayout (" + name + ")",
                  vkCreateDescriptorSetLayout(device.handle(), &info, nullptr, &layout.handle_));
   device.name_object(VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, layout.handle_, name);
@@ -75,6 +77,8 @@ SetLayout::SetLayout(SetLayout&& other) noexcept {
 SetLayout& SetLayout::operator=(SetLayout&& other) noexcept {
   std::swap(device_, other.device_);
   std::swap(handle_, other.handle_);
+  std::swap(bindings_, other.bindings_);
+  std::swap(stages_, other.stages_);
   return *this;
 }
 

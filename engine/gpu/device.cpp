@@ -13,6 +13,7 @@
 #include "engine/gpu/memory.hpp"
 #include "engine/gpu/physical_device.hpp"
 #include "engine/gpu/pipeline_cache.hpp"
+#include "engine/gpu/pipeline_shelf.hpp"
 
 namespace neritic::gpu {
 namespace fs = std::filesystem;
@@ -117,6 +118,7 @@ Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options) {
       options.wait_limit_ns.value_or(device->info_.kind == "CPU" ? UINT64_MAX : kWaitLimit_ns);
   NERITIC_TRY_STATUS(device->create_device(options));
   device->allocator_ = std::make_unique<Allocator>(*device);
+  device->pipelines_ = std::make_unique<PipelineShelf>();
   device->load_pipeline_cache(options.cache_folder);
   return device;
 }
@@ -211,6 +213,7 @@ Device::~Device() {
     save_pipeline_cache();
     if (pipeline_cache_ != VK_NULL_HANDLE)
       vkDestroyPipelineCache(device_, pipeline_cache_, nullptr);
+    pipelines_.reset();
     allocator_.reset();
     validation_target_->log = nullptr;  // what comes now is about leaks: to the sink, or printed
     vkDestroyDevice(device_, nullptr);

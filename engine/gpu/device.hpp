@@ -18,6 +18,7 @@
 namespace neritic::gpu {
 
 class Allocator;
+class PipelineShelf;
 
 struct ValidationLog;
 struct ValidationTarget;
@@ -106,6 +107,7 @@ class Device {
   bool validation() const { return messenger_ != VK_NULL_HANDLE; }
   Allocator& allocator() const { return *allocator_; }
   VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
+  PipelineShelf& pipelines() const { return *pipelines_; }
   const ValidationLog& validation_log() const { return *validation_log_; }
   void clear_validation_log() { validation_log_->messages.clear(); }
 
@@ -148,6 +150,7 @@ class Device {
   std::filesystem::path cache_file_;
   std::uint64_t cache_hash_ = 0;  // of what the file holds: unchanged data is not written again
   std::unique_ptr<Allocator> allocator_;
+  std::unique_ptr<PipelineShelf> pipelines_;
   std::unique_ptr<ValidationLog> validation_log_;
   std::unique_ptr<ValidationTarget> validation_target_;
 };

@@ -9,6 +9,7 @@
 #include "engine/core/log.hpp"
 #include "engine/gpu/device.hpp"
 #include "engine/gpu/error.hpp"
+#include "engine/gpu/pipeline_shelf.hpp"
 
 namespace neritic::gpu {
 namespace {
@@ -85,7 +86,7 @@ Result<VkPipelineLayout> make_layout(const Device& device, const std::string& na
   NERITIC_CHECK(desc.push_constant_bytes <= kMaxPushBytes && desc.push_constant_bytes % 4 == 0,
                 "{}: {} bytes of push constants", name, desc.push_constant_bytes);
   std::vector<VkDescriptorSetLayout> sets{set0};
-  sets.insert(sets.end(), desc.other_sets.begin(), desc.other_sets.end());
+  for (const SetLayout* set : desc.other_sets) sets.push_back(set->handle());
   const VkPushConstantRange range{stages, 0, desc.push_constant_bytes};
   VkPipelineLayoutCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
   info.setLayoutCount = static_cast<std::uint32_t>(sets.size());
@@ -236,59 +237,44 @@ Result<VkPipeline> make_compute(const Device& device, const ComputePipelineDesc&
   return pipeline;
 }
 
-}  // namespace
-
-Result<Pipeline> Pipeline::create_base(const Device& device, const std::string& name,
-                                       const PipelineLayoutDesc& desc, VkShaderStageFlags stages) {
-  Pipeline pipeline;
-  pipeline.device_ = device.handle();
-  pipeline.name_ = name;
-  pipeline.bindings_ = desc.bindings;
-  NERITIC_TRY(pipeline.set0_, SetLayout::create(device, name, desc.bindings, stages));
-  NERITIC_TRY(pipeline.layout_, make_layout(device, name, desc, pipeline.set0(), stages));
-  return pipeline;
+// A pipeline by `make` (the description and its layout to the driver's handle), timed and named.
+template <class Desc, class Make>
+Result<PipelineShelf::Made> made(const Device& device, const Desc& desc, VkShaderStageFlags stages,
+                                 VkPipelineBindPoint bind_point, Make make) {
+  auto out = std::make_shared<MadePipeline>();
+  out->device = device.handle();
+  out->name = desc.name;
+  out->bind_point = bind_point;
+  NERITIC_TRY(out->set0, SetLayout::create(device, desc.name, desc.layout.bindings, stages));
+  NERITIC_TRY(out->layout, make_layout(device, desc.name, desc.layout, out->set0.handle(), stages));
+  const TimeNs start = now_ns();
+  NERITIC_TRY(out->handle, make(device, desc, out->layout));
+  log_info("pipeline {} in {:.1f} ms", desc.name, to_ms(now_ns() - start));
+  device.name_object(VK_OBJECT_TYPE_PIPELINE, out->handle, desc.name);
+  return PipelineShelf::Made(std::move(out));
 }
 
+}  // namespace
+
 Result<Pipeline> Pipeline::create(const Device& device, const ComputePipelineDesc& desc) {
-  NERITIC_TRY(Pipeline pipeline,
-              create_base(device, desc.name, desc.layout, VK_SHADER_STAGE_COMPUTE_BIT));
-  pipeline.bind_point_ = VK_PIPELINE_BIND_POINT_COMPUTE;
-  const TimeNs start = now_ns();
-  NERITIC_TRY(pipeline.handle_, make_compute(device, desc, pipeline.layout_));
-  log_info("pipeline {} in {:.1f} ms", desc.name, to_ms(now_ns() - start));
-  device.name_object(VK_OBJECT_TYPE_PIPELINE, pipeline.handle_, desc.name);
-  return pipeline;
+  NERITIC_TRY(auto pipeline, device.pipelines().get(pipeline_key(desc), [&] {
+    return made(device, desc, VK_SHADER_STAGE_COMPUTE_BIT, VK_PIPELINE_BIND_POINT_COMPUTE,
+                make_compute);
+  }));
+  return Pipeline(std::move(pipeline));
 }
 
 Result<Pipeline> Pipeline::create(const Device& device, const GraphicsPipelineDesc& desc) {
   NERITIC_TRY_STATUS(check_graphics(device, desc));
-  NERITIC_TRY(Pipeline pipeline, create_base(device, desc.name, desc.layout, kGraphicsStages));
-  pipeline.bind_point_ = VK_PIPELINE_BIND_POINT_GRAPHICS;
-  const TimeNs start = now_ns();
-  NERITIC_TRY(pipeline.handle_, make_graphics(device, desc, pipeline.layout_));
-  log_info("pipeline {} in {:.1f} ms", desc.name, to_ms(now_ns() - start));
-  device.name_object(VK_OBJECT_TYPE_PIPELINE, pipeline.handle_, desc.name);
-  return pipeline;
+  NERITIC_TRY(auto pipeline, device.pipelines().get(pipeline_key(desc), [&] {
+    return made(device, desc, kGraphicsStages, VK_PIPELINE_BIND_POINT_GRAPHICS, make_graphics);
+  }));
+  return Pipeline(std::move(pipeline));
 }
 
-Pipeline::Pipeline(Pipeline&& other) noexcept {
-  *this = std::move(other);
-}
-
-Pipeline& Pipeline::operator=(Pipeline&& other) noexcept {
-  std::swap(device_, other.device_);
-  std::swap(handle_, other.handle_);
-  std::swap(layout_, other.layout_);
-  std::swap(bind_point_, other.bind_point_);
-  std::swap(set0_, other.set0_);
-  std::swap(bindings_, other.bindings_);
-  std::swap(name_, other.name_);
-  return *this;
-}
-
-Pipeline::~Pipeline() {
-  if (handle_ != VK_NULL_HANDLE) vkDestroyPipeline(device_, handle_, nullptr);
-  if (layout_ != VK_NULL_HANDLE) vkDestroyPipelineLayout(device_, layout_, nullptr);
+MadePipeline::~MadePipeline() {
+  if (handle != VK_NULL_HANDLE) vkDestroyPipeline(device, handle, nullptr);
+  if (layout != VK_NULL_HANDLE) vkDestroyPipelineLayout(device, layout, nullptr);
 }
 
 }  // namespace neritic::gpu

@@ -1,13 +1,16 @@
 // Pipelines and what they bind. Every pipeline declares its bindings in plain structs whose numbers
 // come from the shared shader headers. Set 0 is written anew for each pass (Commands::bind);
-// further sets are persistent (materials). Move-only owners, named; made on the rendering thread.
+// further sets are persistent (materials). Named; made on the rendering thread. Equal descriptions
+// give one pipeline of the driver, which the device keeps for a while (pipeline_shelf.hpp).
 #pragma once
 
 #include <volk.h>
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/core/result.hpp"
@@ -31,10 +34,14 @@ class SetLayout {
   SetLayout& operator=(SetLayout&& other) noexcept;
   ~SetLayout();
   VkDescriptorSetLayout handle() const { return handle_; }
+  const std::vector<BindingDesc>& bindings() const { return bindings_; }
+  VkShaderStageFlags stages() const { return stages_; }
 
  private:
   VkDevice device_ = VK_NULL_HANDLE;
   VkDescriptorSetLayout handle_ = VK_NULL_HANDLE;
+  std::vector<BindingDesc> bindings_;
+  VkShaderStageFlags stages_ = 0;
 };
 
 struct SpecConstant {
@@ -43,9 +50,9 @@ struct SpecConstant {
 };
 
 struct PipelineLayoutDesc {
-  std::vector<BindingDesc> bindings;              // set 0
-  std::vector<VkDescriptorSetLayout> other_sets;  // sets 1 and up, borrowed
-  std::uint32_t push_constant_bytes = 0;          // at most 128
+  std::vector<BindingDesc> bindings;         // set 0
+  std::vector<const SetLayout*> other_sets;  // sets 1 and up, borrowed
+  std::uint32_t push_constant_bytes = 0;     // at most 128
 };
 
 struct ComputePipelineDesc {
@@ -86,33 +93,40 @@ struct GraphicsPipelineDesc {
 };
 // Dynamic state of every graphics pipeline: viewport, scissor, cull mode, front face.
 
+// What the driver made of a description, and what it stands on.
+struct MadePipeline {
+  MadePipeline() = default;
+  MadePipeline(const MadePipeline&) = delete;
+  MadePipeline& operator=(const MadePipeline&) = delete;
+  ~MadePipeline();
+
+  VkDevice device = VK_NULL_HANDLE;
+  VkPipeline handle = VK_NULL_HANDLE;
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+  VkPipelineBindPoint bind_point = VK_PIPELINE_BIND_POINT_COMPUTE;
+  SetLayout set0;
+  std::string name;
+};
+
+// A share of a pipeline. Copies are the same pipeline; empty by default.
 class Pipeline {
  public:
   static Result<Pipeline> create(const Device& device, const ComputePipelineDesc& desc);
   static Result<Pipeline> create(const Device& device, const GraphicsPipelineDesc& desc);
   Pipeline() = default;
-  Pipeline(Pipeline&& other) noexcept;
-  Pipeline& operator=(Pipeline&& other) noexcept;
-  ~Pipeline();
 
-  VkPipeline handle() const { return handle_; }
-  VkPipelineLayout layout() const { return layout_; }
-  VkPipelineBindPoint bind_point() const { return bind_point_; }
-  VkDescriptorSetLayout set0() const { return set0_.handle(); }
-  const std::vector<BindingDesc>& bindings() const { return bindings_; }
-  const std::string& name() const { return name_; }
-  explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
+  VkPipeline handle() const { return made_ ? made_->handle : VK_NULL_HANDLE; }
+  // The rest only of a pipeline that is not empty.
+  VkPipelineLayout layout() const { return made_->layout; }
+  VkPipelineBindPoint bind_point() const { return made_->bind_point; }
+  VkDescriptorSetLayout set0() const { return made_->set0.handle(); }
+  const std::vector<BindingDesc>& bindings() const { return made_->set0.bindings(); }
+  const std::string& name() const { return made_->name; }
+  explicit operator bool() const { return made_ != nullptr; }
 
  private:
-  static Result<Pipeline> create_base(const Device& device, const std::string& name,
-                                      const PipelineLayoutDesc& desc, VkShaderStageFlags stages);
-  VkDevice device_ = VK_NULL_HANDLE;
-  VkPipeline handle_ = VK_NULL_HANDLE;
-  VkPipelineLayout layout_ = VK_NULL_HANDLE;
-  VkPipelineBindPoint bind_point_ = VK_PIPELINE_BIND_POINT_COMPUTE;
-  SetLayout set0_;
-  std::vector<BindingDesc> bindings_;
-  std::string name_;
+  explicit Pipeline(std::shared_ptr<const MadePipeline> made) : made_(std::move(made)) {}
+  std::shared_ptr<const MadePipeline> made_;
 };
 
 // Persistent descriptor sets of one layout (materials): grows pool by pool, freed all at once.

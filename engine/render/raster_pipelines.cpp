@@ -89,7 +89,7 @@ Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
   if (!plain) {
     desc.layout.bindings.push_back({shared::kRasterNextPositions, kStorage});
     if (forward) desc.layout.bindings.push_back({shared::kRasterLighting, kUniform});
-    desc.layout.other_sets = {material_layout_.handle()};
+    desc.layout.other_sets = {&material_layout_};
     desc.layout.push_constant_bytes = sizeof(shared::RasterPush);
     desc.streams.push_back(surface_stream());
     desc.streams.push_back(next_instance_stream(motion));

@@ -50,17 +50,6 @@ WhiteBalance read_white_balance(TableReader& reader) {
   return {false, reader.vector3("white_balance", Vec3(1.0), {0.1, 20})};
 }
 
-// The term of that key, where there is a table.
-template <class Term, class Read>
-std::optional<Term> read_term(TableReader& parent, Key key, KeyList keys, Read read) {
-  const TomlValue* table = parent.table(key);
-  if (!table) return std::nullopt;
-  TableReader reader(parent.source(), *table, parent.path(key), keys);
-  Term term = read(reader);
-  if (!reader.ok()) parent.fail(reader.status().error());
-  return term;
-}
-
 }  // namespace
 
 void read_camera_terms(TableReader& reader, Camera& camera) {

@@ -24,17 +24,6 @@ constexpr TableFormat kPatternTable{
     "angle_deg, db", {-180, 180, false, false, "degrees"}, {-300, 0, false, false, "decibels"}};
 constexpr TableFormat kSpeedTable{"depth_m, m/s", {-100, 12000, false, false, "metres"}, kSpeed};
 
-// Reads the table under key, where it is there; its fault becomes the sonar's.
-template <class Term, class Read>
-std::optional<Term> read_term(TableReader& sonar, Key key, KeyList keys, Read read) {
-  const TomlValue* table = sonar.table(key);
-  if (!table) return std::nullopt;
-  TableReader reader(sonar.source(), *table, sonar.path(key), keys);
-  Term term = read(reader);
-  if (!reader.ok()) sonar.fail(reader.status().error());
-  return term;
-}
-
 void refuse_beside(TableReader& reader, Key key, std::string_view what) {
   if (reader.has(key)) reader.refuse(key, fmt::format("no such key {}", what));
 }

@@ -91,4 +91,15 @@ Result<Ambient> read_ambient(const SceneSource& source, const TomlValue& table);
 void read_water_terms(TableReader& reader, Water& water);
 Status resolve_water_sources(Scene& scene);
 
+// The term of the table under key, where there is one; its fault becomes the parent's.
+template <class Term, class Read>
+std::optional<Term> read_term(TableReader& parent, Key key, KeyList keys, Read read) {
+  const TomlValue* table = parent.table(key);
+  if (!table) return std::nullopt;
+  TableReader reader(parent.source(), *table, parent.path(key), keys);
+  Term term = read(reader);
+  if (!reader.ok()) parent.fail(reader.status().error());
+  return term;
+}
+
 }  // namespace neritic::scene

@@ -29,7 +29,7 @@ class Block {
   // Each item as its type's default makes it. There are no moves: they would leave blocks without
   // the memory that their counts promise.
   explicit Block(const Counts& counts) : counts_(counts), bytes_(offset_of(kKinds)) {
-    (std::ranges::uninitialized_value_construct(part<Parts>()), ...);
+    (std::uninitialized_value_construct_n(part<Parts>().data(), part<Parts>().size()), ...);
   }
   Block(const Block&) = default;
   Block& operator=(const Block&) = default;

@@ -9,7 +9,7 @@
 namespace neritic::testbed {
 namespace {
 
-constexpr double kLeastSide_m = 20.0, kRoom = 1.25;
+constexpr double kLeastSide_m = 20.0, kMargin = 1.25;
 
 Vec2 east_north(const Vec3& position_m) {
   return {position_m.x, -position_m.z};
@@ -61,7 +61,7 @@ MapFrame map_frame(const std::vector<MapMark>& marks, const MapTrails& trails) {
   }
   if (!(low.x <= high.x)) return {};
   return {0.5 * (low + high),
-          std::max(kLeastSide_m, kRoom * std::max(high.x - low.x, high.y - low.y))};
+          std::max(kLeastSide_m, kMargin * std::max(high.x - low.x, high.y - low.y))};
 }
 
 void draw_map(const std::vector<MapMark>& marks, const MapMark& eye, const MapTrails& trails,

@@ -5,7 +5,9 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <set>
 
+#include "engine/gpu/pipeline_shelf.hpp"
 #include "shaders.hpp"
 #include "tests/support/gpu_fixture.hpp"
 
@@ -346,6 +348,106 @@ TEST_F(TriangleTest, MoreViewsThanTheDeviceHasIsAnError) {
   const auto made = Pipeline::create(device(), desc);
   ASSERT_FALSE(made.ok());
   EXPECT_EQ(made.error().code, ErrorCode::kUnsupported);
+}
+
+// What is described alike is one pipeline of the driver, also after all its owners are gone.
+TEST_F(PipelineTest, EqualDescriptionsShareOneOfTheDrivers) {
+  VkPipeline first = VK_NULL_HANDLE;
+  {
+    NERITIC_ASSERT_OK(const Pipeline a, fill(7));
+    NERITIC_ASSERT_OK(const Pipeline b, fill(7));
+    NERITIC_ASSERT_OK(const Pipeline c, fill(8));
+    EXPECT_EQ(a.handle(), b.handle());
+    EXPECT_NE(a.handle(), c.handle());
+    first = a.handle();
+  }
+  NERITIC_ASSERT_OK(const Pipeline again, fill(7));
+  EXPECT_EQ(again.handle(), first);
+}
+
+TEST_F(TriangleTest, EveryPartOfADescriptionTellsPipelinesApart) {
+  std::set<std::string> keys;
+  std::size_t made = 0;
+  const auto differs = [&](const auto& desc) {
+    keys.insert(pipeline_key(desc));
+    EXPECT_EQ(keys.size(), ++made) << made;
+  };
+  ComputePipelineDesc compute;
+  compute.name = "fill";
+  compute.code = shaders::kTestFillComp;
+  compute.layout.bindings = {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+  differs(compute);
+  ComputePipelineDesc other = compute;
+  other.code = shaders::kTestTriangleVert;
+  differs(other);
+  other = compute;
+  other.constants = {{0, 1}};
+  differs(other);
+  other.constants = {{1, 0}};
+  differs(other);
+  other = compute;
+  other.layout.push_constant_bytes = 8;
+  differs(other);
+  other = compute;
+  other.layout.bindings[0].count = 2;
+  differs(other);
+  other = compute;
+  NERITIC_ASSERT_OK(const SetLayout set, SetLayout::create(device(), "set", compute.layout.bindings,
+                                                           VK_SHADER_STAGE_COMPUTE_BIT));
+  other.layout.other_sets = {&set};
+  differs(other);
+  other.layout.other_sets = {&set, &set};
+  differs(other);
+
+  const GraphicsPipelineDesc graphics = triangle();
+  differs(graphics);
+  const auto with = [&](auto change) {
+    GraphicsPipelineDesc desc = graphics;
+    change(desc);
+    differs(desc);
+  };
+  with([](auto& d) { d.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST; });
+  with([](auto& d) { d.color_formats.push_back(VK_FORMAT_R8G8B8A8_UNORM); });
+  with([](auto& d) { d.color_formats[0] = VK_FORMAT_R32_UINT; });
+  with([](auto& d) { d.depth_format = VK_FORMAT_D32_SFLOAT; });
+  with([](auto& d) { d.depth_write = false; });
+  with([](auto& d) { d.depth_compare = VK_COMPARE_OP_EQUAL; });
+  with([](auto& d) { d.blend = Blend::kTinted; });
+  with([](auto& d) { d.view_mask = 3; });
+  with([](auto& d) { d.streams.push_back({.stride = 12}); });
+  with([](auto& d) { d.streams.push_back({.stride = 12, .per_instance = true}); });
+  with([](auto& d) { d.streams.push_back({.stride = 12, .attributes = {{}}}); });
+  with([](auto& d) { d.fragment_code = {}; });
+}
+
+TEST_F(PipelineTest, TheShelfKeepsSoManyThatNobodyUses) {
+  PipelineShelf shelf;
+  int made = 0;
+  const auto get = [&](int i) {
+    return shelf.get(fmt::format("{}", i), [&]() -> Result<PipelineShelf::Made> {
+      ++made;
+      return std::make_shared<MadePipeline>();
+    });
+  };
+  NERITIC_ASSERT_OK(const auto used, get(0));
+  const int last = static_cast<int>(PipelineShelf::kUnusedKept) + 1;
+  for (int i = 1; i <= last; ++i) ASSERT_TRUE(get(i).ok());
+  EXPECT_EQ(made, last + 1);
+  NERITIC_ASSERT_OK(const auto again, get(0));
+  EXPECT_EQ(again, used);  // the oldest, but used
+  EXPECT_TRUE(get(last).ok());
+  EXPECT_EQ(made, last + 1);
+  EXPECT_TRUE(get(1).ok());  // the oldest that nobody used is gone
+  EXPECT_EQ(made, last + 2);
+  EXPECT_FALSE(shelf
+                   .get("bad",
+                        [] {
+                          return Result<PipelineShelf::Made>(Error{ErrorCode::kUnsupported, "no"});
+                        })
+                   .ok());
+  EXPECT_TRUE(
+      shelf.get("bad", [] { return Result<PipelineShelf::Made>(std::make_shared<MadePipeline>()); })
+          .ok());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // folders.
 #pragma once
 
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -39,6 +40,12 @@ class ScratchFolder {
  private:
   std::filesystem::path path_;
 };
+
+// Whether statistical tests take all their draws (tools/test --thorough), not a quarter of them.
+inline bool is_thorough() {
+  const char* value = std::getenv("NERITIC_THOROUGH");
+  return value && std::string(value) == "1";
+}
 
 }  // namespace neritic::test
 

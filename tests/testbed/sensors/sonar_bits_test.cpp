@@ -13,7 +13,7 @@ namespace {
 
 using SonarBits = test::GpuTest;
 
-// Where another run of this program shall leave its hash, to be compared.
+// Where another run of this program shall leave the hash of one run, to be compared.
 constexpr const char* kHashFile = "NERITIC_TEST_SONAR_HASH_FILE";
 
 std::string hash_of(const std::vector<SonarFrame>& frames) {
@@ -45,7 +45,7 @@ TEST_F(SonarBits, TwentyRunsOfEveryTermGiveTheSameBits) {
     request.capture = request.capture.without_geometry();
     std::string first;
     std::unique_ptr<Session> session;
-    for (int run = 0; run < 20; ++run) {
+    for (int run = 0; run < (std::getenv(kHashFile) ? 1 : 20); ++run) {
       if (run % 4 == 0) {  // from nothing, then in the memory of the run before
         NERITIC_ASSERT_OK(session, Session::create(device(), some_sea(sonar)));
       }

@@ -1,0 +1,22 @@
+# Read by ctest before it tests: one test a suite of each program of SUITE_PROGRAMS, "PREFIX|PROGRAM" each.
+# The tests of a suite share its process, and with it the device's pipelines, whose making costs most tests of
+# sensors more than what they draw.
+foreach(entry ${SUITE_PROGRAMS})
+  string(REGEX MATCH "^(.*)\\|(.*)$" entry "${entry}")
+  set(prefix ${CMAKE_MATCH_1})
+  set(program ${CMAKE_MATCH_2})
+  if(NOT EXISTS ${program})
+    add_test(${prefix}_NOT_BUILT ${program})
+    continue()
+  endif()
+  execute_process(COMMAND ${program} --gtest_list_tests OUTPUT_VARIABLE listed RESULT_VARIABLE status)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${program} --gtest_list_tests: status ${status}")
+  endif()
+  string(REGEX MATCHALL "(^|\n)[A-Za-z0-9_/]+\\." suites "${listed}")
+  foreach(suite ${suites})
+    string(REGEX REPLACE "[\n.]" "" suite "${suite}")
+    add_test(${prefix}.${suite} ${program} "--gtest_filter=${suite}.*" --gtest_color=no)
+    set_tests_properties(${prefix}.${suite} PROPERTIES TIMEOUT 600)
+  endforeach()
+endforeach()
