@@ -4,24 +4,41 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_multiview : require
 
-// A particle's spot: a soft disk, a streak of it, a bubble's bright rim, a cloud of silt that ends softly where
-// it meets a surface. Premultiplied output.
+// A particle's spot: a soft disk, a streak of it, a cloud of silt that ends softly where it meets a
+// surface; a bubble, by total reflection and refraction (shared/bubble.h). Premultiplied output.
+#include "shared/bubble.h"
 #include "shared/lighting.h"
 #include "shared/particles.h"
 
-layout(constant_id = kSpecMultiview) const bool kMultiview = true;
+layout(constant_id = kSpecBubbles) const bool kBubbles = false;
+layout(constant_id = kSpecParticleMultiview) const bool kMultiview = true;
 
 layout(location = 0) in vec2 place;
 layout(location = 1) flat in vec3 shape;
 layout(location = 2) flat in vec3 body;
-layout(location = 3) flat in vec3 bright;
-layout(location = 4) flat in uvec2 kind;
-layout(location = 5) flat in vec4 flatness;
+layout(location = 3) flat in uvec2 kind;
+layout(location = 4) flat in vec4 flatness;
+layout(location = 5) flat in vec3 upright;
+layout(location = 6) flat in vec3 along_sight;
+layout(location = 7) flat in vec3 level_light;
+layout(location = 8) flat in vec3 low_light;
+layout(location = 9) flat in vec3 window_light;
+layout(location = 10) flat in vec4 sun_light;
+layout(location = 11) flat in vec4 lamp_light;
+layout(location = 12) flat in vec3 to_lamp;
+layout(location = 13) flat in vec3 veil;
 
-layout(set = 0, binding = kParticleViews, scalar) uniform Views { View views[kMaxViews]; };
+layout(set = 0, binding = kParticleViews, scalar) uniform Views {
+  View views[kMaxViews];
+};
+layout(set = 0, binding = kParticleLighting, scalar) uniform Light {
+  Lighting light;
+};
 layout(set = 0, binding = kParticleDepth) uniform texture2DArray depth_image;
 
 layout(location = 0) out vec4 out_color;
+
+const float kPi = 3.14159265358979;
 
 float noise(vec2 p, uint seed) {
   vec2 cell = floor(p), part = p - cell;
@@ -37,23 +54,59 @@ float noise(vec2 p, uint seed) {
   return mix(mix(corners[0], corners[1], part.x), mix(corners[2], corners[3], part.x), part.y);
 }
 
+// Light about a bubble from a unit direction; spread: variance of the directions that a pixel
+// joins.
+vec3 around_bubble(vec3 direction, float spread) {
+  float soft = 0.04 + sqrt(spread);
+  vec3 sum = mix(level_light, low_light, smoothstep(0.0, 0.9, -direction.y));
+  // Snell's cone: 48.6 degrees from the zenith.
+  sum = mix(sum, window_light, smoothstep(0.661 - soft, 0.661 + soft, direction.y));
+  float sun = sun_light.w + spread, lamp = lamp_light.w + spread;
+  sum += sun_light.rgb * exp(-2.0 * (1.0 - dot(direction, light.to_sun)) / sun) / (kPi * sun);
+  return sum + lamp_light.rgb * exp(-2.0 * (1.0 - dot(direction, to_lamp)) / lamp) / (kPi * lamp);
+}
+
+// A sphere of gas, flattened: premultiplied light and opacity at a place (pixels) on it.
+vec4 bubble(vec2 from) {
+  vec2 screen =
+      vec2(flatness.z * from.x - flatness.w * from.y, flatness.w * from.x + flatness.z * from.y);
+  vec2 spot =
+      vec2(dot(screen, vec2(-upright.y, upright.x)), dot(screen, upright.xy) / upright.z) / shape.y;
+  float r = length(spot);
+  // About a pixel and a half from full to none, across the outline.
+  float slope = r > 1e-4 ? length(vec2(spot.x, spot.y / upright.z)) / (r * shape.y) : 1.0 / shape.y;
+  float cover = clamp(0.5 + (1.0 - r) / (1.5 * slope), 0.0, 1.0);
+  if (r > 0.998) spot *= 0.998 / r;
+  float facing = sqrt(max(1.0 - dot(spot, spot), 0.0));
+  // Axes about the way from the eye: to the right, up, towards the eye.
+  vec3 up = abs(along_sight.y) < 0.999 ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0);
+  vec3 right = normalize(cross(along_sight, up));
+  up = cross(right, along_sight);
+  vec3 normal = normalize(right * spot.x + up * (spot.y / upright.z) - along_sight * facing);
+  float cosine = clamp(-dot(along_sight, normal), 0.0, 1.0), sine = sqrt(1.0 - cosine * cosine);
+  // Off a face a pixel joins directions that differ by twice its width.
+  float width = 1.2 / max(shape.y, 0.8), spread = width * width;
+  float mirrored = bubble_reflectance(sine);
+  // Near the middle the light goes nearly straight on: there the picture behind shows through.
+  float bent = smoothstep(0.1, 0.5, r);
+  vec3 color = mirrored * around_bubble(bubble_mirrored(along_sight, normal), spread);
+  if (mirrored < 1.0)
+    color += (1.0 - mirrored) * bent * around_bubble(bubble_passed(along_sight, normal), spread);
+  float own = mirrored + (1.0 - mirrored) * bent;
+  return vec4(min(color + veil * own, vec3(60000.0)), own) * clamp(cover * shape.z, 0.0, 1.0);
+}
+
 void main() {
   int view = kMultiview ? gl_ViewIndex : 0;
   vec2 from = vec2(max(abs(place.x) - shape.x, 0.0) * sign(place.x), place.y);
   float r = length(from) / shape.y;
   float alpha;
   vec3 color = body;
-  if (kind.x == kParticleBubble) {
-    // Upwards on the picture, from the streak's own axes.
-    vec2 spot = from / shape.y;
-    vec2 screen = vec2(flatness.z * spot.x - flatness.w * spot.y, flatness.w * spot.x + flatness.z * spot.y);
-    float edge = 1.0 - smoothstep(1.0 - 1.5 / max(shape.y, 1.5), 1.0, r);
-    float rim = smoothstep(0.35, 0.9, r);
-    float top = smoothstep(0.6, -0.5, screen.y);
-    float glint = smoothstep(0.32, 0.05, length(screen - vec2(-0.25, -0.45)));
-    color = mix(body, bright, clamp(0.25 + 0.6 * rim * (0.35 + 0.65 * top) + 0.8 * glint, 0.0, 1.0));
-    alpha = edge * (0.35 + 0.65 * max(rim, glint));
-  } else if (kind.x == kParticleSilt) {
+  if (kBubbles) {
+    out_color = bubble(from);
+    return;
+  }
+  if (kind.x == kParticleSilt) {
     vec2 spot = from / shape.y;
     alpha = max(1.0 - r * r, 0.0);
     alpha *= alpha;

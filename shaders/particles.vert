@@ -4,12 +4,15 @@
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_multiview : require
 
-// A particle's spot on the picture: where it is, how wide with its blur, its streak, and its light. A spot
-// that would be narrower than a pixel and a half is as wide and fainter, so that it does not flicker.
+// A particle's spot on the picture: where it is, how wide with its blur, its streak, and its light.
+// A spot that would be narrower than a pixel and a half is as wide and fainter, so that it does not
+// flicker.
+#include "shared/bubble.h"
 #include "shared/lighting.h"
 #include "shared/particles.h"
 
-layout(constant_id = kSpecMultiview) const bool kMultiview = true;
+layout(constant_id = kSpecBubbles) const bool kBubbles = false;
+layout(constant_id = kSpecParticleMultiview) const bool kMultiview = true;
 
 layout(location = kParticlePosition) in vec4 in_position;
 layout(location = kParticleMoved) in vec4 in_moved;
@@ -25,12 +28,23 @@ uint glow_samples() { return 4u; }
 
 #include "shared/water.glsl"
 
-layout(location = 0) out vec2 place;         // pixels from the streak's middle: along, across
-layout(location = 1) flat out vec3 shape;    // half streak, radius (pixels), opacity
-layout(location = 2) flat out vec3 body;     // radiance that arrives from an opaque one, exposed
-layout(location = 3) flat out vec3 bright;   // of a bubble: of what mirrors the light from above
-layout(location = 4) flat out uvec2 kind;
-layout(location = 5) flat out vec4 flatness;  // distance (m), radius (m), direction of the streak
+layout(location = 0) out vec2 place;       // pixels from the streak's middle: along, across
+layout(location = 1) flat out vec3 shape;  // half streak, radius (pixels), opacity
+layout(location = 2) flat out vec3 body;   // radiance that arrives from an opaque one, exposed
+layout(location = 3) flat out uvec2 kind;
+layout(location = 4) flat out vec4 flatness;  // distance (m), radius (m), direction of the streak
+// Of a bubble: its short axis on the picture and its height over its width there; the way from the
+// eye; radiances about it (exposed, as they arrive), and what the water before it adds.
+layout(location = 5) flat out vec3 upright;
+layout(location = 6) flat out vec3 along_sight;
+layout(location = 7) flat out vec3 level_light;
+layout(location = 8) flat out vec3 low_light;
+layout(location = 9) flat out vec3 window_light;
+layout(
+    location = 10) flat out vec4 sun_light;  // of the beam's irradiance; variance of its directions
+layout(location = 11) flat out vec4 lamp_light;  // of the strongest lamp's, and the same
+layout(location = 12) flat out vec3 to_lamp;
+layout(location = 13) flat out vec3 veil;
 
 // Share of even light that a small pale thing sends on. Aggregates of marine snow are translucent.
 const vec3 kSnowAlbedo = vec3(0.55, 0.57, 0.55);
@@ -61,6 +75,38 @@ vec3 radiance_of(vec3 at, vec3 to_eye, vec3 albedo) {
   return sum * albedo;
 }
 
+// What a bubble mirrors and lets through: the water about it, the light within Snell's cone, sun
+// and lamp.
+void light_bubble(vec3 at, vec3 along, Sight sight) {
+  float depth_m = light.origin_depth_m - at.y;
+  vec3 scale = sight.transmittance * light.exposure;
+  vec3 level = normalize(vec3(along.x, 0.02 * sign(along.y), along.z) + vec3(1e-6, 0.0, 0.0));
+  level_light = look_through(depth_m, level, kForever_m).added * scale;
+  low_light = look_through(depth_m, vec3(0.0, -1.0, 0.0), kForever_m).added * scale;
+  if (light_has(kLightSun)) {
+    vec3 irradiance = downwelling(depth_m), direct = direct_share(depth_m);
+    // Even light from within 48.6 degrees of the zenith: irradiance = pi sin^2 radiance.
+    window_light = irradiance * (1.0 - direct) * (kWaterIndex * kWaterIndex / kPi) * scale;
+    // The waves' spread of 10 degrees, and what the water has turned by small angles
+    // (visibility.h).
+    sun_light = vec4(irradiance * direct / light.sun_cosine * scale,
+                     0.03 + 0.02 * light.particle_scattering.g * max(depth_m, 0.0));
+  }
+  for (uint i = 0u; i < lamp_count(); ++i) {
+    vec3 way = light.lamps[i].position - at;
+    float distance_m = max(length(way), 0.05);
+    way /= distance_m;
+    float cone = smoothstep(light.lamps[i].cos_outer, light.lamps[i].cos_inner, dot(-way, light.lamps[i].direction));
+    vec3 arriving = light.lamps[i].intensity_cd * cone / (distance_m * distance_m + 0.0025);
+    if (light_has(kLightWater))
+      arriving *= exp(-min(light.beam_attenuation * distance_m, vec3(80.0)));
+    if (arriving.g * scale.g <= lamp_light.g) continue;
+    lamp_light = vec4(arriving * scale, 0.004);
+    to_lamp = way;
+  }
+  veil = sight.added * light.exposure;
+}
+
 void main() {
   int view = kMultiview ? gl_ViewIndex : 0;
   vec4 now = views[view].clip_from_origin * vec4(in_position.xyz, 1.0);
@@ -68,7 +114,9 @@ void main() {
                    views[view].next_clip_from_origin * vec4(in_position.xyz + in_moved.xyz, 1.0), push.shutter);
   gl_Position = vec4(0.0, 0.0, -1.0, 1.0);  // nothing, unless it is before the camera
   place = vec2(0.0);
-  shape = body = bright = vec3(0.0);
+  shape = body = vec3(0.0);
+  upright = along_sight = level_light = low_light = window_light = to_lamp = veil = vec3(0.0);
+  sun_light = lamp_light = vec4(0.0);
   kind = in_kind;
   flatness = vec4(0.0);
   if (!(now.w > views[view].near_m)) return;
@@ -83,29 +131,40 @@ void main() {
   vec3 from_eye = in_position.xyz - views[view].eye;
   float distance_m = max(length(from_eye), 1e-3);
   vec3 to_eye = -from_eye / distance_m;
-  float pixels_m = length(views[view].ray_dx) > 0.0 ? 1.0 / (length(views[view].ray_dx) * now.w) : 0.0;
-  float own = in_position.w * pixels_m;
-  float blur = 0.5 * kLensOpening_m * abs(1.0 / now.w - 1.0 / kLensFocus_m) / length(views[view].ray_dx);
+  float pixels_m =
+      length(views[view].ray_dx) > 0.0 ? 1.0 / (length(views[view].ray_dx) * now.w) : 0.0;
+  // It keeps its volume, so a flat one is wider. It wobbles as it rises, large ones more.
+  float loose = smoothstep(0.0015, 0.004, in_position.w);
+  float swing = float(in_kind.y & 255u) * kWobbleTurn_rad;
+  float aspect =
+      kBubbles ? clamp(bubble_aspect(in_position.w) * (1.0 + 0.18 * loose * sin(swing)), 0.25, 1.0)
+               : 1.0;
+  float own = in_position.w * pow(aspect, -1.0 / 3.0) * pixels_m;
+  float blur =
+      0.5 * kLensOpening_m * abs(1.0 / now.w - 1.0 / kLensFocus_m) / length(views[view].ray_dx);
   float radius = in_kind.x == kParticleSilt ? own : sqrt(own * own + blur * blur + 0.56);
   // A spot's light is spread over its blur and its streak; snow's soft disk has half the light of a flat one.
   float share = in_kind.x == kParticleSilt ? 1.0 : (in_kind.x == kParticleSnow ? 2.0 : 1.0) * own * own / (radius * radius) * (radius * kPi / (radius * kPi + 2.0 * streak));
   vec3 albedo = in_kind.x == kParticleSilt ? kSiltAlbedo : kSnowAlbedo;
   Sight sight = look_through(light.origin_depth_m - views[view].eye.y, -to_eye, distance_m);
-  vec3 own_light = radiance_of(in_position.xyz, to_eye, albedo);
-  if (in_kind.x == kParticleBubble) {
-    // A bubble's rim mirrors what is about it; from where the sky's light comes it is bright.
-    float depth_m = light.origin_depth_m - in_position.y;
-    own_light = sight.water;
-    vec3 above = light_has(kLightSun) ? downwelling(depth_m) * (1.0 / kPi) : vec3(0.0);
-    vec3 lamps = radiance_of(in_position.xyz, to_eye, vec3(1.0));
-    own_light = 0.5 * above + 0.3 * lamps;
-    // The light that it mirrors comes out of Snell's cone, whose radiance is 1 / sin^2 48.6 deg of an even sky's, and is
-    // brighter still towards the sun.
-    bright = ((2.5 * above + 0.5 * lamps) * sight.transmittance + sight.added) * light.exposure;
+  if (kBubbles) {
+    along_sight = -to_eye;
+    light_bubble(in_position.xyz, -to_eye, sight);
+    // Seen at an angle to the level a flat bubble is rounder.
+    float seen = sqrt(aspect * aspect * (1.0 - to_eye.y * to_eye.y) + to_eye.y * to_eye.y);
+    // Upwards on the picture, tilted by its swing.
+    vec4 above = views[view].clip_from_origin * vec4(in_position.xyz + vec3(0.0, 1e-2, 0.0), 1.0);
+    vec2 axis = above.w > views[view].near_m ? above.xy / above.w * half_size - a : vec2(0.0);
+    axis = dot(axis, axis) > 1e-8 ? normalize(axis) : vec2(0.0, -1.0);
+    float tilt = 0.35 * loose * cos(swing + float((in_kind.y >> 8) & 255u) * kWobbleTurn_rad) *
+                 (1.0 - to_eye.y * to_eye.y);
+    upright = vec3(cos(tilt) * axis.x - sin(tilt) * axis.y, sin(tilt) * axis.x + cos(tilt) * axis.y,
+                   seen);
+  } else {
+    body = (radiance_of(in_position.xyz, to_eye, albedo) * sight.transmittance + sight.added) *
+           light.exposure;
+    body = min(body, vec3(60000.0));
   }
-  body = (own_light * sight.transmittance + sight.added) * light.exposure;
-  body = min(body, vec3(60000.0));
-  bright = min(bright, vec3(60000.0));
   shape = vec3(0.5 * streak, radius, in_moved.w * share);
   flatness = vec4(distance_m, in_position.w, along);
   // Corners of the strip, a pixel wider than the spot.

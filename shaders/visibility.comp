@@ -51,7 +51,7 @@ vec2 sun_hidden(vec3 position, vec3 normal, float depth_m, float turn) {
   int size = textureSize(cascade_image, 0).x;
   float half_m = params.cascades[cascade].half_m, near_m = params.cascades[cascade].near_m;
   float texel_m = 2.0 * half_m / float(size);
-  float facing = max(dot(normal, params.to_sun), 0.2);
+  float facing = max(dot(normal, params.to_sun), 0.03);
   // Metres towards the sun that the surface rises a metre across and along.
   vec2 slope = -vec2(dot(normal, params.cascades[cascade].across), dot(normal, params.cascades[cascade].along)) / facing;
   float bias_m = 0.004 + texel_m * (0.5 + 0.7 * (abs(slope.x) + abs(slope.y)));

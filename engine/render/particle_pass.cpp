@@ -1,10 +1,22 @@
-// WaterPasses: particles over the shaded picture, one instance each.
+// WaterPasses: particles over the shaded picture, one instance each: bubbles, then all others.
+#include <algorithm>
+
 #include "engine/render/lighting.hpp"
 #include "engine/render/raster_draws.hpp"
 #include "engine/render/water_passes.hpp"
 #include "shaders.hpp"
+#include "shared/bubble.h"
 
 namespace neritic::render {
+namespace {
+
+// A view mask has six bits at most.
+std::uint32_t pipeline_key(std::uint32_t view_mask, bool of_bubbles) {
+  static_assert(shared::kMaxViews < 31);
+  return view_mask | (of_bubbles ? 1u << 31 : 0u);
+}
+
+}  // namespace
 
 Result<graph::ImageHandle> WaterPasses::declare_particles(
     graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle hdr,
@@ -12,34 +24,41 @@ Result<graph::ImageHandle> WaterPasses::declare_particles(
     const std::vector<shared::Particle>& particles, float shutter) {
   if (particles.empty()) return hdr;
   const std::vector<std::uint32_t> masks = view_masks_of(gbuffer.layers, device_);
-  for (const std::uint32_t mask : masks) {
-    gpu::Pipeline& pipeline = particles_[mask];
-    if (pipeline) continue;
-    gpu::GraphicsPipelineDesc desc;
-    desc.name = "particles";
-    desc.vertex_code = shaders::kParticlesVert;
-    desc.fragment_code = shaders::kParticlesFrag;
-    desc.layout.bindings = {{shared::kParticleViews, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
-                            {shared::kParticleLighting, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
-                            {shared::kParticleDepth, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}};
-    desc.layout.push_constant_bytes = sizeof(shared::ParticlePush);
-    desc.constants = {{shared::kSpecMultiview, mask != 0}};
-    desc.streams = {
-        {sizeof(shared::Particle),
-         {{shared::kParticlePosition, VK_FORMAT_R32G32B32A32_SFLOAT,
-           offsetof(shared::Particle, position)},
-          {shared::kParticleMoved, VK_FORMAT_R32G32B32A32_SFLOAT,
-           offsetof(shared::Particle, moved)},
-          {shared::kParticleKind, VK_FORMAT_R32G32_UINT, offsetof(shared::Particle, kind)}},
-         true}};
-    desc.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP;
-    desc.color_formats = {kHdrFormat};
-    desc.depth_format = kDepthFormat;
-    desc.depth_write = false;
-    desc.blend = gpu::Blend::kAlphaOver;
-    desc.view_mask = mask;
-    NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
-  }
+  const auto bubbles = static_cast<std::uint32_t>(
+      std::ranges::find_if(
+          particles, [](const shared::Particle& p) { return p.kind != shared::kParticleBubble; }) -
+      particles.begin());
+  const std::uint32_t others = static_cast<std::uint32_t>(particles.size()) - bubbles;
+  for (const std::uint32_t mask : masks)
+    for (const bool of_bubbles : {true, false}) {
+      gpu::Pipeline& pipeline = particles_[pipeline_key(mask, of_bubbles)];
+      if (pipeline || (of_bubbles ? bubbles : others) == 0) continue;
+      gpu::GraphicsPipelineDesc desc;
+      desc.name = "particles";
+      desc.vertex_code = shaders::kParticlesVert;
+      desc.fragment_code = shaders::kParticlesFrag;
+      desc.layout.bindings = {{shared::kParticleViews, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+                              {shared::kParticleLighting, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+                              {shared::kParticleDepth, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}};
+      desc.layout.push_constant_bytes = sizeof(shared::ParticlePush);
+      desc.constants = {{shared::kSpecBubbles, of_bubbles},
+                        {shared::kSpecParticleMultiview, mask != 0}};
+      desc.streams = {
+          {sizeof(shared::Particle),
+           {{shared::kParticlePosition, VK_FORMAT_R32G32B32A32_SFLOAT,
+             offsetof(shared::Particle, position)},
+            {shared::kParticleMoved, VK_FORMAT_R32G32B32A32_SFLOAT,
+             offsetof(shared::Particle, moved)},
+            {shared::kParticleKind, VK_FORMAT_R32G32_UINT, offsetof(shared::Particle, kind)}},
+           true}};
+      desc.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP;
+      desc.color_formats = {kHdrFormat};
+      desc.depth_format = kDepthFormat;
+      desc.depth_write = false;
+      desc.blend = gpu::Blend::kAlphaOver;
+      desc.view_mask = mask;
+      NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
+    }
   struct Data {
     graph::ImageHandle hdr;
   };
@@ -50,8 +69,8 @@ Result<graph::ImageHandle> WaterPasses::declare_particles(
         data.hdr = builder.write(hdr, graph::Access::kColorAttachment);
         builder.read(gbuffer.depth, graph::Access::kDepthTestAndSampled);
       },
-      [this, masks, gbuffer, lighting, shutter, &views, &particles](const Data& data,
-                                                                    graph::PassContext& context) {
+      [this, masks, gbuffer, lighting, shutter, bubbles, others, &views, &particles](
+          const Data& data, graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
         const VkImageLayout depth_layout =
             graph::access_info(graph::Access::kDepthTestAndSampled).layout;
@@ -71,15 +90,19 @@ Result<graph::ImageHandle> WaterPasses::declare_particles(
             commands.upload(std::span<const shared::Particle>(particles));
         const shared::ParticlePush push{Vec2f(gbuffer.width, gbuffer.height), shutter};
         for (const std::uint32_t mask : masks) {
-          const gpu::Pipeline& pipeline = particles_.at(mask);
           begin_rendering(context.cmd(), gbuffer, mask, std::span(&color, 1), depth);
-          commands.bind_pipeline(pipeline);
-          commands.bind(pipeline, set0);
-          commands.push(pipeline, push);
           vkCmdSetCullMode(context.cmd(), VK_CULL_MODE_NONE);
           vkCmdSetFrontFace(context.cmd(), VK_FRONT_FACE_COUNTER_CLOCKWISE);
           vkCmdBindVertexBuffers(context.cmd(), 0, 1, &stream.buffer, &stream.offset);
-          vkCmdDraw(context.cmd(), 4, static_cast<std::uint32_t>(particles.size()), 0, 0);
+          for (const bool of_bubbles : {true, false}) {
+            const std::uint32_t count = of_bubbles ? bubbles : others;
+            if (count == 0) continue;
+            const gpu::Pipeline& pipeline = particles_.at(pipeline_key(mask, of_bubbles));
+            commands.bind_pipeline(pipeline);
+            commands.bind(pipeline, set0);
+            commands.push(pipeline, push);
+            vkCmdDraw(context.cmd(), 4, count, 0, of_bubbles ? 0 : bubbles);
+          }
           vkCmdEndRendering(context.cmd());
         }
       });

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/random.hpp"
+#include "shared/bubble.h"
 
 namespace neritic::render {
 namespace {
@@ -89,6 +90,15 @@ std::vector<WorldParticle> snow_around(const scene::Snow& snow, std::uint64_t se
   return out;
 }
 
+namespace {
+
+// A bubble's look (shared/bubble.h): its own, turned on by the swing now.
+std::uint32_t wobbling(std::uint32_t look, std::uint32_t swing) {
+  return (look & ~255u) | ((look + swing) & 255u);
+}
+
+}  // namespace
+
 bool has_particles(const scene::Scene& scene) {
   return scene.water &&
          (scene.water->snow || !scene.water->bubbles.empty() || !scene.water->silt.empty());
@@ -97,6 +107,9 @@ bool has_particles(const scene::Scene& scene) {
 ViewParticles view_particles(const scene::MotionSource& motion, std::uint64_t seed,
                              const ViewSet& views, double time_s, double snow_share) {
   ViewParticles out;
+  // Of bubbles' wobble now, in 256ths of a turn.
+  const double swings = time_s * shared::kWobble_hz;
+  const auto swing = static_cast<std::uint32_t>(256.0 * (swings - std::floor(swings)));
   const scene::Water& water = *motion.scene().water;
   const Vec3 origin = views.origin_m();
   std::vector<WorldParticle> all;
@@ -116,10 +129,17 @@ ViewParticles view_particles(const scene::MotionSource& motion, std::uint64_t se
     seen.push_back({glm::dot(at, at),
                     {Vec3f(at), static_cast<float>(particle.radius_m),
                      Vec3f(particle.velocity_m_s * out.shutter_s),
-                     static_cast<float>(particle.opacity), particle.kind, particle.seed}});
+                     static_cast<float>(particle.opacity), particle.kind,
+                     particle.kind == shared::kParticleBubble ? wobbling(particle.seed, swing)
+                                                              : particle.seed}});
   }
-  std::stable_sort(seen.begin(), seen.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  // Bubbles first: they have a pipeline of their own. What little is wrong where silt or snow
+  // floats behind one, nobody sees.
+  std::stable_sort(seen.begin(), seen.end(), [](const auto& a, const auto& b) {
+    const bool first = a.second.kind == shared::kParticleBubble;
+    const bool second = b.second.kind == shared::kParticleBubble;
+    return first != second ? first : a.first > b.first;
+  });
   out.particles.reserve(seen.size());
   for (const auto& [distance2, particle] : seen) out.particles.push_back(particle);
   return out;

@@ -8,6 +8,7 @@
 #include "engine/render/particles.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/render/sea_waves.hpp"
+#include "shared/bubble.h"
 #include "tests/support/gpu_fixture.hpp"
 
 namespace neritic::render {
@@ -204,6 +205,34 @@ TEST(Bubbles, GrowRiseAndEndAtTheSurfaceTheSameEachTime) {
         EXPECT_NEAR(b.radius_m / a.radius_m, std::cbrt(pressures), 1e-3);
       }
   EXPECT_GT(followed, 50);
+}
+
+TEST(Bubbles, AreAsFlatAsWellekMeasuredAndMirrorAllBeyondTheCriticalAngle) {
+  // Eotvos numbers of 0.55, 3.42 and 13.7.
+  EXPECT_NEAR(shared::bubble_aspect(0.001f), 0.906, 0.005);
+  EXPECT_NEAR(shared::bubble_aspect(0.0025f), 0.707, 0.005);
+  EXPECT_NEAR(shared::bubble_aspect(0.005f), 0.458, 0.005);
+  EXPECT_EQ(shared::bubble_aspect(1.0f), 0.3f);
+  EXPECT_EQ(shared::bubble_aspect(0.0f), 1.0f);
+  // Fresnel: ((n - 1) / (n + 1))^2 head on; all from 1 / n = sin 48.6 degrees on.
+  EXPECT_NEAR(shared::bubble_reflectance(0.0f), 0.02037, 1e-4);
+  EXPECT_LT(shared::bubble_reflectance(0.74f), 0.5f);
+  EXPECT_EQ(shared::bubble_reflectance(0.7503f), 1.0f);
+  EXPECT_EQ(shared::bubble_reflectance(1.0f), 1.0f);
+}
+
+TEST(Bubbles, TurnLightAsTwoRefractionsDo) {
+  const Vec3f along(0.0f, 0.0f, -1.0f);
+  for (const double sine : {0.0, 0.2, 0.5, 0.7, 0.749}) {
+    const Vec3f normal(0.0f, float(sine), float(std::sqrt(1.0 - sine * sine)));
+    // In at the angle i, on through the gas at asin(n sin i), out again alike.
+    const double turn = 2.0 * (std::asin(1.333 * sine) - std::asin(sine));
+    const Vec3f passed = shared::bubble_passed(along, normal);
+    EXPECT_NEAR(passed.y, std::sin(turn), 2e-3) << sine;
+    EXPECT_NEAR(passed.z, -std::cos(turn), 2e-3) << sine;
+    const Vec3f mirrored = shared::bubble_mirrored(along, normal);
+    EXPECT_NEAR(mirrored.y, std::sin(2.0 * (kPi / 2.0 - std::asin(sine))), 1e-5) << sine;
+  }
 }
 
 TEST(Silt, IsKickedUpOnlyNearTheBedAndSettles) {
