@@ -24,11 +24,10 @@ std::uint32_t times(std::uint32_t named, double factor, double least, double mos
   return static_cast<std::uint32_t>(std::clamp(std::round(named * factor), least, most));
 }
 
-double mesh_error_px(const scene::PictureDetail& d) {
-  return d.inscatter_samples >= 16 ? 0.0 : d.resolution < 1.0 ? 1.0 : 0.5;
-}
-double caustic_size(const scene::PictureDetail& d) {
-  return d.resolution < 1.0 ? 0.5 : 1.0;
+// Pixels by which coarser meshes may differ (scene::MeshLevel); of the sun's maps texels. None where
+// each pixel has a shadow of its own.
+double mesh_error_px(const scene::PictureDetail& detail) {
+  return 0.5 * (static_cast<double>(detail.visibility_step) - 1.0);
 }
 
 // Texels of the lamps' maps by which coarser meshes may differ.
@@ -61,7 +60,7 @@ Status declare_shared_light(const FrameParts& frame, const ViewsWork& work,
   if (!scene.sun || !scene.sun->caustics || !scene.water || !(lighting.direct_share > 0.0f))
     return {};
   scene::Caustics caustics = *scene.sun->caustics;
-  caustics.texels = times(caustics.texels, caustic_size(detail), 16, 2048);
+  caustics.texels = times(caustics.texels, detail.shadow_size, 16, 2048);
   const double origin_depth_m = static_cast<double>(lighting.origin_depth_m);
   const auto [first, end] =
       render::caustic_levels(origin_depth_m - draws.highest_m, origin_depth_m - draws.lowest_m);
