@@ -36,7 +36,8 @@ void main() {
   vec3 flat_below = refract(params.travel_air, vec3(0.0, 1.0, 0.0), 1.0 / kWaterIndex);
   vec2 aside = below.xz / max(-below.y, 0.05) - flat_below.xz / max(-flat_below.y, 0.05);
   float depth_m = params.first_m;
-  for (uint level = 0u; level < kCausticLevels; ++level) {
+  for (uint level = 0u; level < params.first_level; ++level) depth_m *= params.step;
+  for (uint level = params.first_level; level < params.end_level; ++level) {
     // From the texel's corner; far enough into positive numbers that rounding is towards zero.
     vec2 lands = vec2(at) + aside * (depth_m / texel_m);
     vec2 whole = floor(lands);

@@ -26,9 +26,12 @@ float smoothed(uint level, uvec2 at) {
 
 void main() {
   uvec3 at = gl_GlobalInvocationID;
+  at.z += params.first_level / kCausticLayerStep;
   uint n = params.texels;
   if (at.x >= n || at.y >= n) return;
-  vec4 light;
-  for (uint i = 0u; i < 4u; ++i) light[i] = smoothed(at.z * 4u + i, at.xy);
+  vec4 light = vec4(1.0);
+  uint base = at.z * kCausticLayerStep;
+  for (uint level = max(base, params.first_level); level < min(base + 4u, params.end_level); ++level)
+    light = mix(light, vec4(smoothed(level, at.xy)), equal(uvec4(0u, 1u, 2u, 3u), uvec4(level - base)));
   imageStore(out_image, ivec3(at), light);
 }

@@ -70,14 +70,16 @@ float caustic_at(vec3 position, float pixel_m) {
   vec2 surface = position.xz + light.to_sun.xz * (depth_m / light.to_sun.y) + light.caustic_origin_m;
   vec2 uv = surface / light.caustic_tile_m;
   float level = clamp(log2(max(depth_m, 1e-3) / kCausticFirst_m) / log2(kCausticStep), 0.0, float(kCausticLevels - 1u));
-  uint low = min(uint(level), kCausticLevels - 2u), high = low + 1u;
-  float above = textureLod(caustics_image, vec3(uv, float(low / 4u)), 0.0)[low & 3u];
-  float below = textureLod(caustics_image, vec3(uv, float(high / 4u)), 0.0)[high & 3u];
+  // One sample has both levels; each weighs what the place is near to it.
+  float layer = min(floor(level / float(kCausticLayerStep)), float(kCausticLayers - 1u));
+  vec4 levels = textureLod(caustics_image, vec3(uv, layer), 0.0);
+  vec4 weights = max(1.0 - abs(level - float(kCausticLayerStep) * layer - vec4(0.0, 1.0, 2.0, 3.0)), vec4(0.0));
+  float net = dot(levels, weights);
   float scattered = (light.particle_scattering.g + light.water_scattering.g) * max(depth_m, 0.0) / light.sun_cosine;
   float texel_m = light.caustic_tile_m / float(textureSize(caustics_image, 0).x);
   float kept = exp(-min(scattered, 80.0)) * clamp(depth_m / kCausticFirst_m, 0.0, 1.0) *
                clamp(1.5 - pixel_m / (4.0 * texel_m), 0.0, 1.0);
-  return 1.0 + (mix(above, below, level - float(low)) - 1.0) * kept;
+  return 1.0 + (net - 1.0) * kept;
 }
 
 // The visibility image at a pixel: between its four nearest, the farther off in distance the less.

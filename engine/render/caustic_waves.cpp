@@ -40,6 +40,7 @@ shared::CausticsParams caustics_params(const scene::Caustics& caustics, const Ve
   params.tile_m = static_cast<float>(caustics.tile_m);
   params.first_m = shared::kCausticFirst_m;
   params.step = shared::kCausticStep;
+  params.end_level = shared::kCausticLevels;
   params.travel_air = Vec3f(-to_sun_air);
   const bool named = !caustics.waves.empty();
   const double whole = 2.0 * kPi / caustics.tile_m;
@@ -60,6 +61,18 @@ shared::CausticsParams caustics_params(const scene::Caustics& caustics, const Ve
     out.angle_rad = static_cast<float>(std::remainder(phase - rate * time_s, 2.0 * kPi));
   }
   return params;
+}
+
+std::pair<std::uint32_t, std::uint32_t> caustic_levels(double least_depth_m, double most_depth_m) {
+  // As the shade pass chooses them, widened by its rounding.
+  const auto low = [](double depth_m, double margin) {
+    const double at = std::log(std::max(depth_m, 1e-3) / double(shared::kCausticFirst_m)) /
+                          std::log(double(shared::kCausticStep)) +
+                      margin;
+    return static_cast<std::uint32_t>(std::clamp(at, 0.0, double(shared::kCausticLevels - 2)));
+  };
+  if (!(least_depth_m <= most_depth_m)) return {0, shared::kCausticLevels};
+  return {low(least_depth_m, -1e-3), low(most_depth_m, 1e-3) + 2};
 }
 
 }  // namespace neritic::render

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 
 #include "engine/scene/scene_light.hpp"
 #include "shared/caustics.h"
@@ -16,5 +17,9 @@ namespace neritic::render {
 // surface tension (7.4e-5 m^3/s^2).
 shared::CausticsParams caustics_params(const scene::Caustics& caustics, const Vec3& to_sun_air,
                                        double time_s, std::uint64_t seed);
+
+// The levels, first and end, that shade surfaces between two depths; all where the depths are no
+// range.
+std::pair<std::uint32_t, std::uint32_t> caustic_levels(double least_depth_m, double most_depth_m);
 
 }  // namespace neritic::render

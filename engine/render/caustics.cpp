@@ -5,7 +5,8 @@
 
 namespace neritic::render {
 Result<graph::ImageHandle> Renderer::declare_caustics(graph::FrameGraph& graph,
-                                                      const shared::CausticsParams& params) {
+                                                      const shared::CausticsParams& params,
+                                                      const std::string& name) {
   constexpr auto kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
                  kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
   if (!caustics_) {
@@ -25,10 +26,10 @@ Result<graph::ImageHandle> Renderer::declare_caustics(graph::FrameGraph& graph,
     graph::ImageHandle out;
   };
   const Data& cleared = graph.add_pass<Data>(
-      "caustics clear",
+      name + " clear",
       [&](graph::PassBuilder& builder, Data& data) {
         data.sums =
-            builder.write(builder.create_buffer("caustics sums",
+            builder.write(builder.create_buffer(name + " sums",
                                                 std::uint64_t{4} * shared::kCausticLevels * n * n),
                           graph::Access::kTransferWrite);
       },
@@ -36,11 +37,11 @@ Result<graph::ImageHandle> Renderer::declare_caustics(graph::FrameGraph& graph,
         vkCmdFillBuffer(context.cmd(), context.buffer(data.sums).handle(), 0, VK_WHOLE_SIZE, 0);
       });
   const Data& thrown = graph.add_pass<Data>(
-      "caustics",
+      name,
       [&](graph::PassBuilder& builder, Data& data) {
         data.sums = builder.write(cleared.sums, graph::Access::kStorageWriteCompute);
       },
-      [this, params, n](const Data& data, graph::PassContext& context) {
+      [this, &params, n](const Data& data, graph::PassContext& context) {
         context.commands.bind_pipeline(caustics_);
         context.commands.bind(
             caustics_,
@@ -49,22 +50,25 @@ Result<graph::ImageHandle> Renderer::declare_caustics(graph::FrameGraph& graph,
         context.commands.dispatch(groups(n), groups(n), 1);
       });
   const Data& resolved = graph.add_pass<Data>(
-      "caustics resolve",
+      name + " resolve",
       [&](graph::PassBuilder& builder, Data& data) {
         data.sums = thrown.sums;
         builder.read(thrown.sums, graph::Access::kStorageReadCompute);
         data.out = builder.write(
-            builder.create_image("caustics", {kHdrFormat, n, n, shared::kCausticLevels / 4}),
+            builder.create_image(name, {kHdrFormat, n, n, shared::kCausticLayers}),
             graph::Access::kStorageWriteCompute);
       },
-      [this, params, n](const Data& data, graph::PassContext& context) {
+      [this, &params, n](const Data& data, graph::PassContext& context) {
         context.commands.bind_pipeline(caustics_resolve_);
         context.commands.bind(
             caustics_resolve_,
             {bound_slice(shared::kCausticsParams, context.commands.upload(&params, sizeof params)),
              gpu::bound_buffer(shared::kCausticsSums, context.buffer(data.sums).handle()),
              gpu::bound_storage_image(shared::kCausticsOut, context.image(data.out).view())});
-        context.commands.dispatch(groups(n), groups(n), shared::kCausticLevels / 4);
+        // Layers of other levels are read by nobody.
+        const std::uint32_t first = params.first_level / shared::kCausticLayerStep,
+                            last = (params.end_level - 2) / shared::kCausticLayerStep;
+        context.commands.dispatch(groups(n), groups(n), last - first + 1);
       });
   return resolved.out;
 }

@@ -34,7 +34,8 @@ Status check_deform(const gpu::Device& device, const FrameState& state) {
 }  // namespace
 
 Result<DeformedGeometry> Renderer::declare_deform(graph::FrameGraph& graph, const GpuScene& scene,
-                                                  const FrameState& state) {
+                                                  const FrameState& state,
+                                                  const std::vector<std::uint32_t>* need) {
   if (state.deforms.empty()) return DeformedGeometry{};
   NERITIC_TRY_STATUS(check_deform(device_, state));
   if (!deform_) {
@@ -59,7 +60,7 @@ Result<DeformedGeometry> Renderer::declare_deform(graph::FrameGraph& graph, cons
         data.next_positions =
             builder.write(data.next_positions, graph::Access::kStorageWriteCompute);
       },
-      [this, &scene, &state](const DeformedGeometry& data, graph::PassContext& context) {
+      [this, &scene, &state, need](const DeformedGeometry& data, graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
         const gpu::BoundResource resources[] = {
             gpu::bound_buffer(shared::kDeformPositions, scene.positions().handle()),
@@ -73,10 +74,12 @@ Result<DeformedGeometry> Renderer::declare_deform(graph::FrameGraph& graph, cons
                                                   : nowhere_.handle())};
         commands.bind_pipeline(deform_);
         commands.bind(deform_, resources);
-        for (const DeformJob& job : state.deforms) {
-          commands.push(deform_, job.push);
-          commands.dispatch((job.push.vertex_count + shared::kDeformGroup - 1) /
-                            shared::kDeformGroup);
+        for (std::size_t i = 0; i < state.deforms.size(); ++i) {
+          shared::DeformPush push = state.deforms[i].push;
+          if (need) push.vertex_count = i < need->size() ? (*need)[i] : 0;
+          if (push.vertex_count == 0) continue;
+          commands.push(deform_, push);
+          commands.dispatch((push.vertex_count + shared::kDeformGroup - 1) / shared::kDeformGroup);
         }
       });
 }

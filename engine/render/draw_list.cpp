@@ -19,16 +19,11 @@ struct Seen {
   const Appearance* appearance;
   Mat4 origin_from_primitive;
   std::uint32_t deformed;
+  std::uint32_t level;  // 0: the mesh itself
   bool mirrored;
   bool hides_back_faces;
   double order_m;
 };
-
-// No length grows by more than this (the Frobenius norm bounds every stretch, sheared or not).
-double largest_scale(const Mat4& m) {
-  return std::sqrt(glm::dot(Vec3(m[0]), Vec3(m[0])) + glm::dot(Vec3(m[1]), Vec3(m[1])) +
-                   glm::dot(Vec3(m[2]), Vec3(m[2])));
-}
 
 // Indices that culling must save before an instance gets a draw of its own: a draw command costs
 // llvmpipe as much as 270 triangles outside the picture (cluster_culling.cpp).
@@ -44,10 +39,10 @@ double nearness(double center_m, double radius_m) {
 bool all_eyes_outside(const ViewSet& views, const GpuPrimitive& primitive,
                       const Mat4& origin_from_primitive) {
   const Mat4 primitive_from_origin = glm::inverse(origin_from_primitive);
-  const double shrink = largest_scale(primitive_from_origin);
-  const double size_m =
-      glm::length(Vec3(origin_from_primitive[3])) +
-      largest_scale(origin_from_primitive) * (glm::length(primitive.center_m) + primitive.radius_m);
+  const double shrink = largest_stretch(primitive_from_origin);
+  const double size_m = glm::length(Vec3(origin_from_primitive[3])) +
+                        largest_stretch(origin_from_primitive) *
+                            (glm::length(primitive.center_m) + primitive.radius_m);
   return std::all_of(views.views.begin(), views.views.end(), [&](const ViewDesc& view) {
     const Vec3 eye_m = view.world_from_view.position_m - views.origin_m();
     const FrustumTangents& t = view.tangents;
@@ -72,7 +67,17 @@ class DrawListBuilder {
         views_(views),
         options_(options),
         origin_(views.origin_m()),
-        culling_(views) {}
+        culling_(views) {
+    for (const ViewDesc& view : views.views) {
+      const FrustumTangents& t = view.tangents;
+      eyes_.push_back(
+          {view.world_from_view.position_m - origin_,
+           view.world_from_view.rotation * Vec3(0.0, 0.0, -1.0),
+           std::max(views.width / (t.right - t.left), views.height / (t.top - t.bottom)),
+           view.near_m});
+    }
+    if (options.deform_need) options.deform_need->resize(state.deforms.size(), 0);
+  }
 
   DrawList build() {
     out_.all_triangles = gpu_scene_.triangles();
@@ -92,8 +97,8 @@ class DrawListBuilder {
     // Instances that share vertices and winding follow each other, front to back, however many
     // draws they become: the order decides between equal depths.
     std::stable_sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) {
-      return std::tuple(a.deformed, a.mirrored, a.order_m) <
-             std::tuple(b.deformed, b.mirrored, b.order_m);
+      return std::tuple(a.deformed, a.mirrored, a.level, a.order_m) <
+             std::tuple(b.deformed, b.mirrored, b.level, b.order_m);
     });
     const GpuMaterial& material = gpu_scene_.materials()[primitive.material];
     const bool clusters = options_.clusters && !primitive.clusters.empty() &&
@@ -102,16 +107,16 @@ class DrawListBuilder {
       std::size_t end = i + 1;
       if (!material.blend)
         while (end < seen.size() && seen[end].deformed == seen[i].deformed &&
-               seen[end].mirrored == seen[i].mirrored)
+               seen[end].mirrored == seen[i].mirrored && seen[end].level == seen[i].level)
           ++end;
       const std::span<const Seen> alike(seen.data() + i, end - i);
-      add_alike(primitive, alike, clusters && seen[i].deformed == kNone,
+      add_alike(primitive, alike, clusters && seen[i].deformed == kNone && seen[i].level == 0,
                 material.blend ? out_.blended : out_.opaque);
       i = end;
     }
   }
 
-  std::vector<Seen> seen_of(std::uint32_t g) const {
+  std::vector<Seen> seen_of(std::uint32_t g) {
     const DrawGroup& group = gpu_scene_.groups()[g];
     const GpuPrimitive& primitive = group.primitive;
     const bool blend = gpu_scene_.materials()[primitive.material].blend;
@@ -120,31 +125,64 @@ class DrawListBuilder {
       const std::uint16_t class_id = scene_.objects[a.object].class_id;
       if (class_id != 0 && class_id == options_.without_class) continue;
       if (!options_.objects.empty() && !options_.objects[a.object]) continue;
-      const std::uint32_t deformed =
-          primitive.deforms()
-              ? state_.deformed_at(g, a.object, a.node, a.object == views_.worn_object)
-              : kNone;
-      const bool skinned = primitive.first_skin != kNone && deformed != kNone;
+      const DeformJob* job =
+          primitive.deforms() ? state_.job_of(g, a.object, a.node, a.object == views_.worn_object)
+                              : nullptr;
+      const std::uint32_t deformed = job ? job->push.first_out : kNone;
+      const bool skinned = primitive.first_skin != kNone && job;
       Mat4 m = world_from_appearance(scene_, state_.world_from_object[a.object],
                                      state_.poses[a.object], a, skinned, state_.flock[a.object]);
       m[3] -= Vec4(origin_, 0.0);
-      const Vec3 center = Vec3(m * Vec4(primitive.center_m, 1.0));
-      const double center_m = glm::length(center), stretch = largest_scale(m);
-      const double error_m =
-          kFloatError * (glm::length(Vec3(m[3])) +
-                         stretch * (glm::length(primitive.center_m) + primitive.radius_m));
-      // The rest shape bounds nothing that deforms: such are always drawn.
-      if (deformed == kNone &&
-          !any_view_sees(views_, center, primitive.radius_m * stretch + error_m))
-        continue;
-      // The Frobenius norm of a turn without scale is sqrt(3): near enough for an order.
-      const double order_m =
-          blend ? center_m : nearness(center_m, primitive.radius_m * stretch / std::sqrt(3.0));
+      // The rest shape bounds nothing that deforms: without a bound of its own such is drawn.
+      const bool bounded = !job || job->radius_m >= 0.0;
+      const Vec3 own_center_m = job && bounded ? job->center_m : primitive.center_m;
+      const double own_radius_m = job && bounded ? job->radius_m : primitive.radius_m;
+      const Vec3 center = Vec3(m * Vec4(own_center_m, 1.0));
+      const double center_m = glm::length(center), stretch = largest_stretch(m);
+      const double error_m = kFloatError * (glm::length(Vec3(m[3])) +
+                                            stretch * (glm::length(own_center_m) + own_radius_m));
+      if (bounded && !any_view_sees(views_, center, own_radius_m * stretch + error_m)) continue;
+      const double order_m = blend ? center_m : nearness(center_m, own_radius_m * stretch);
+      std::uint32_t level = 0;
+      if (options_.mesh_error_px > 0.0 && bounded && !blend) {
+        const double px_m = pixels_a_metre(center, own_radius_m * stretch);
+        if (2.0 * own_radius_m * stretch * px_m < 0.5 * options_.mesh_error_px) continue;
+        while (level < primitive.levels.size() &&
+               primitive.levels[level].error_m * stretch * px_m <= options_.mesh_error_px)
+          ++level;
+      }
+      if (job && options_.deform_need) {
+        std::uint32_t& need =
+            (*options_.deform_need)[static_cast<std::size_t>(job - state_.deforms.data())];
+        need = std::max(need,
+                        level ? primitive.levels[level - 1].vertex_count : primitive.vertex_count);
+      }
+      add_heights(bounded, m, center, job ? Vec3(own_radius_m) : primitive.half_m);
       const bool hides =
           options_.hide_back_faces && primitive.closed && all_eyes_outside(views_, primitive, m);
-      seen.push_back({&a, m, deformed, glm::determinant(glm::dmat3(m)) < 0.0, hides, order_m});
+      seen.push_back(
+          {&a, m, deformed, level, glm::determinant(glm::dmat3(m)) < 0.0, hides, order_m});
     }
     return seen;
+  }
+
+  // Widens the list's heights by a box round a centre; a ball's box turns like any other.
+  void add_heights(bool bounded, const Mat4& m, const Vec3& center, const Vec3& half_m) {
+    const double reach_m = bounded ? std::abs(m[0][1]) * half_m.x + std::abs(m[1][1]) * half_m.y +
+                                         std::abs(m[2][1]) * half_m.z
+                                   : std::numeric_limits<double>::infinity();
+    out_.lowest_m = std::min(out_.lowest_m, center.y - reach_m);
+    out_.highest_m = std::max(out_.highest_m, center.y + reach_m);
+  }
+
+  // The most pixels that a metre takes at the nearest part of a ball, in any view.
+  double pixels_a_metre(const Vec3& center, double radius_m) const {
+    double most = 0.0;
+    for (const Eye& eye : eyes_) {
+      const double near_m = glm::dot(center - eye.position_m, eye.ahead) - radius_m;
+      most = std::max(most, eye.pixels / std::max(near_m, eye.near_m));
+    }
+    return most;
   }
 
   // Instances that may share a draw, in their order: those seen whole do with their neighbours.
@@ -157,7 +195,7 @@ class DrawListBuilder {
       const bool part = clusters && add_visible_part(primitive, s);
       if (part && out_.ranges.size() == first_range) continue;  // nothing of it is seen
       if (part || !joins) {
-        if (!part) out_.ranges.push_back({primitive.first_index, primitive.index_count});
+        if (!part) out_.ranges.push_back(whole(primitive, s.level));
         draws.push_back({&primitive, static_cast<std::uint32_t>(out_.instances.size()), 0,
                          first_range, static_cast<std::uint32_t>(out_.ranges.size()) - first_range,
                          s.deformed, s.mirrored, true, order_m});
@@ -170,6 +208,11 @@ class DrawListBuilder {
       for (std::uint32_t r = 0; r < draws.back().range_count; ++r)
         out_.triangles += out_.ranges[draws.back().first_range + r].index_count / 3;
     }
+  }
+
+  static IndexRange whole(const GpuPrimitive& primitive, std::uint32_t level) {
+    if (level == 0) return {primitive.first_index, primitive.index_count};
+    return {primitive.levels[level - 1].first_index, primitive.levels[level - 1].index_count};
   }
 
   // Adds the ranges of an instance that some view can see. False, and nothing added, where that is
@@ -209,6 +252,12 @@ class DrawListBuilder {
   const DrawListOptions options_;
   const Vec3 origin_;
   const ClusterCulling culling_;
+  struct Eye {
+    Vec3 position_m, ahead;
+    double pixels;  // a unit of tangent
+    double near_m;
+  };
+  std::vector<Eye> eyes_;
   DrawList out_;
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -26,9 +27,13 @@ struct DrawList {
   std::vector<shared::Instance> instances;
   std::vector<shared::NextInstance> next_instances;  // empty without motion
   std::vector<IndexRange> ranges;
-  std::vector<Draw> opaque;         // front to back
-  std::vector<Draw> blended;        // back to front, one instance a draw
-  bool clipped = false;             // at the plane of ViewSet::within
+  std::vector<Draw> opaque;   // front to back
+  std::vector<Draw> blended;  // back to front, one instance a draw
+  bool clipped = false;       // at the plane of ViewSet::within
+  // Heights of what is drawn, from the set's origin; everything where not all is bounded. Nothing
+  // drawn: lowest_m is above highest_m.
+  double lowest_m = std::numeric_limits<double>::infinity(),
+         highest_m = -std::numeric_limits<double>::infinity();
   std::uint64_t triangles = 0;      // drawn
   std::uint64_t all_triangles = 0;  // of the scene's rigid and deforming meshes, every appearance
 };
@@ -42,6 +47,12 @@ struct DrawListOptions {
   std::uint16_t without_class = 0;
   // Flags by object: those with 0 are left out. Empty: none is.
   std::span<const std::uint8_t> objects = {};
+  // Meshes may be coarser where that moves nothing by more than so many pixels (see
+  // scene::MeshLevel), and what is smaller than half of it is left out; 0: all are whole.
+  double mesh_error_px = 0.0;
+  // How many vertices of each FrameState::deforms are drawn, raised to what this list draws.
+  // nullptr: nobody asks.
+  std::vector<std::uint32_t>* deform_need = nullptr;
 };
 
 // Up to this many visible instances of a mesh with clusters are examined one by one, and each that

@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "engine/render/views.hpp"
 #include "engine/scene/flock_motion.hpp"
 #include "engine/scene/model_lights.hpp"
 
@@ -62,10 +63,27 @@ void append_weights(std::vector<float>& out, const scene::ModelPose& pose, std::
   for (std::uint32_t i = 0; i < count; ++i) out.push_back(i < weights.size() ? weights[i] : 0.0f);
 }
 
+// A ball round what these joints' matrices bring their parts to. Weights sum to 1 but for rounding.
+void bound_job(DeformJob& job, const GpuPrimitive& primitive, const std::vector<Mat4f>& joints,
+               std::size_t first) {
+  scene::Bounds box;
+  for (const JointBound& part : primitive.joint_bounds) {
+    if (first + part.joint >= joints.size()) return;
+    const Mat4 m(joints[first + part.joint]);
+    const Vec3 center_m(m * Vec4(part.center_m, 1.0));
+    const double reach_m = part.radius_m * largest_stretch(m);
+    box.add(center_m - Vec3(reach_m));
+    box.add(center_m + Vec3(reach_m));
+  }
+  if (box.empty() || !is_finite(box.min) || !is_finite(box.max)) return;
+  job.center_m = 0.5 * (box.min + box.max);
+  job.radius_m = 0.5 * glm::length(box.max - box.min) * 1.01 + 1e-4;
+}
+
 }  // namespace
 
-std::uint32_t FrameState::deformed_at(std::uint32_t group, std::uint32_t object, std::uint32_t node,
-                                      bool headless) const {
+const DeformJob* FrameState::job_of(std::uint32_t group, std::uint32_t object, std::uint32_t node,
+                                    bool headless) const {
   const auto key_of = [](const DeformJob& job) {
     return std::make_tuple(job.group, job.object, job.node, job.headless);
   };
@@ -74,8 +92,8 @@ std::uint32_t FrameState::deformed_at(std::uint32_t group, std::uint32_t object,
       std::lower_bound(deforms.begin(), deforms.end(), key,
                        [&](const DeformJob& job, const auto& k) { return key_of(job) < k; });
   if (at == deforms.end() || key_of(*at) != key)
-    return headless ? deformed_at(group, object, node) : kNone;
-  return at->push.first_out;
+    return headless ? job_of(group, object, node) : nullptr;
+  return &*at;
 }
 
 FrameState evaluate_frame(const scene::MotionSource& source, const GpuScene& gpu_scene,
@@ -134,6 +152,7 @@ FrameState evaluate_frame(const scene::MotionSource& source, const GpuScene& gpu
       job.push.joint_stride =
           static_cast<std::uint32_t>(state.joints.size()) - job.push.first_joint;
       if (skinned && motion) append_joints(state.joints, model, state.next_poses[object], skin);
+      if (skinned) bound_job(job, primitive, state.joints, job.push.first_joint);
       append_weights(state.weights, state.poses[object], node, primitive.morph_targets);
       job.push.weight_stride = primitive.morph_targets;
       if (motion)
@@ -147,6 +166,7 @@ FrameState evaluate_frame(const scene::MotionSource& source, const GpuScene& gpu
       job.push.first_joint = static_cast<std::uint32_t>(state.joints.size());
       job.push.first_out = state.deformed_vertices;
       append_joints(state.joints, model, state.poses[object], skin, head);
+      bound_job(job, primitive, state.joints, job.push.first_joint);
       if (motion) append_joints(state.joints, model, state.next_poses[object], skin, head);
       state.deformed_vertices += primitive.vertex_count;
       state.deforms.push_back(job);

@@ -15,6 +15,9 @@ namespace neritic::render {
 struct DeformJob {
   std::uint32_t group = 0, object = 0, node = 0;
   bool headless = false;  // beside the whole one
+  // A ball in the object's frame that nothing of it leaves; negative: none is known.
+  Vec3 center_m{0.0};
+  double radius_m = -1.0;
   shared::DeformPush push{};
 };
 
@@ -39,10 +42,11 @@ struct FrameState {
   std::vector<DeformJob> deforms;
   std::uint32_t deformed_vertices = 0;
 
-  // First vertex of that appearance in the deformed stream; kNone where it does not deform.
-  // headless: of its skinned mesh without the head, where the object is worn and has one.
-  std::uint32_t deformed_at(std::uint32_t group, std::uint32_t object, std::uint32_t node,
-                            bool headless = false) const;
+  // The job of that appearance, whose push.first_out is its first vertex in the deformed stream;
+  // nullptr where it does not deform. headless: of its skinned mesh without the head, where the
+  // object is worn and has one.
+  const DeformJob* job_of(std::uint32_t group, std::uint32_t object, std::uint32_t node,
+                          bool headless = false) const;
 };
 
 // with_next: the next instant too, for motion. worn: objects that some view looks out of; what

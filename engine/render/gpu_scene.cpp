@@ -1,6 +1,9 @@
 #include "engine/render/gpu_scene.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <span>
+#include <thread>
 
 #include "engine/render/closed_surface.hpp"
 #include "engine/render/gpu_scene_geometry.hpp"
@@ -44,6 +47,8 @@ class GpuSceneBuilder {
   GpuSceneBuilder(const scene::Scene& scene, GpuScene& out) : scene_(scene), out_(out) {}
 
   Status add_models(MaterialBuilder& materials, GeometryBuilder& geometry) {
+    const auto levels = levels_of_primitives();
+    std::size_t next = 0;
     for (std::size_t m = 0; m < scene_.models.size(); ++m) {
       first_group_.emplace_back();
       for (const scene::Mesh& mesh : scene_.models[m]->meshes) {
@@ -51,7 +56,7 @@ class GpuSceneBuilder {
         for (const scene::Primitive& p : mesh.primitives) {
           NERITIC_TRY(const std::uint32_t material,
                       materials.material_of(m, p.material, !p.colors.empty()));
-          out_.groups_.push_back({geometry.add(p, material), {}});
+          out_.groups_.push_back({geometry.add(p, material, levels[next++]), {}});
           GpuPrimitive& added = out_.groups_.back().primitive;
           added.closed = may_be_closed(scene_.models[m]->materials, p.material, added) &&
                          is_closed(p.positions, p.indices);
@@ -88,6 +93,33 @@ class GpuSceneBuilder {
   }
 
  private:
+  // A larger mesh surrounds the camera, or lies so far off that nobody sees it: its clusters are
+  // culled instead, and making its levels would take longer than the rest of a start.
+  static constexpr double kLargest_m = 12.0;
+
+  // The coarser levels of every model's primitives, in their order. On all cores: a start waits.
+  std::vector<std::vector<scene::MeshLevel>> levels_of_primitives() const {
+    std::vector<const scene::Primitive*> all;
+    for (const auto& model : scene_.models)
+      for (const scene::Mesh& mesh : model->meshes)
+        for (const scene::Primitive& p : mesh.primitives) all.push_back(&p);
+    std::vector<std::vector<scene::MeshLevel>> out(all.size());
+    std::atomic<std::size_t> next{0};
+    const auto work = [&] {
+      for (std::size_t i = next++; i < all.size(); i = next++)
+        if (!all[i]->bounds.empty() &&
+            glm::length(all[i]->bounds.max - all[i]->bounds.min) < kLargest_m)
+          out[i] = scene::mesh_levels(*all[i]);
+    };
+    std::vector<std::thread> helpers;
+    const std::size_t threads = std::min<std::size_t>(
+        std::max(1u, std::thread::hardware_concurrency()), std::max<std::size_t>(all.size(), 1));
+    for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back(work);
+    work();
+    for (std::thread& helper : helpers) helper.join();
+    return out;
+  }
+
   void add_node(std::size_t object_index, const scene::Object& object, const scene::Model& model,
                 int n) {
     const scene::Node& node = model.nodes[static_cast<std::size_t>(n)];

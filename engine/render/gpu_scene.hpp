@@ -25,6 +25,20 @@ struct GpuMaterial {
   bool double_sided = false, mask = false, blend = false, emissive = false;
 };
 
+// A coarser version of a primitive (engine/scene/mesh_levels.hpp).
+struct GpuLevel {
+  std::uint32_t first_index = 0, index_count = 0;
+  std::uint32_t vertex_count = 0;  // of a skinned primitive: it uses none of those after these
+  double error_m = 0.0;            // in the mesh's frame
+};
+
+// A ball round the vertices, at rest, that a joint moves.
+struct JointBound {
+  std::uint32_t joint = 0;  // of the skin
+  Vec3 center_m{0.0};
+  double radius_m = 0.0;
+};
+
 struct GpuPrimitive {
   scene::Topology topology = scene::Topology::kTriangles;
   std::uint32_t first_index = 0, index_count = 0;
@@ -34,8 +48,10 @@ struct GpuPrimitive {
   std::uint32_t first_morph = 0, morph_targets = 0;
   Vec3 center_m{0.0};  // bounding sphere in the mesh's frame, rest shape
   double radius_m = 0.0;
-  Vec3 half_m{0.0};                   // of the bounding box round the same centre
-  std::vector<ClusterNode> clusters;  // empty: drawn whole
+  Vec3 half_m{0.0};                      // of the bounding box round the same centre
+  std::vector<ClusterNode> clusters;     // empty: drawn whole
+  std::vector<GpuLevel> levels;          // coarser and coarser
+  std::vector<JointBound> joint_bounds;  // skinned without morph targets; else empty
   bool closed =
       false;  // rigid, and nobody outside it sees a back face; only told in scenes with sonars
   bool deforms() const { return first_skin != kNone || morph_targets > 0; }

@@ -46,6 +46,35 @@ std::vector<std::uint32_t> order_by_use(std::vector<std::uint32_t>& indices, std
   return order;
 }
 
+// Balls round what each joint moves: a skinned vertex lies between the places to which its joints
+// alone would bring it.
+std::vector<JointBound> bounds_of_joints(const scene::Primitive& p) {
+  std::vector<scene::Bounds> boxes;
+  const auto each = [&](auto&& visit) {
+    for (std::size_t v = 0; v < p.positions.size(); ++v)
+      for (int k = 0; k < 4; ++k)
+        if (p.weights[v][k] > 0.0f) visit(p.joints[v][static_cast<std::size_t>(k)], v);
+  };
+  each([&](std::size_t joint, std::size_t v) {
+    if (joint >= boxes.size()) boxes.resize(joint + 1);
+    boxes[joint].add(Vec3(p.positions[v]));
+  });
+  std::vector<JointBound> out(boxes.size());
+  for (std::size_t j = 0; j < boxes.size(); ++j) {
+    out[j].joint = static_cast<std::uint32_t>(j);
+    out[j].radius_m = -1.0;
+    if (boxes[j].empty()) continue;
+    out[j].center_m = (boxes[j].min + boxes[j].max) * 0.5;
+    out[j].radius_m = 0.0;
+  }
+  each([&](std::size_t joint, std::size_t v) {
+    out[joint].radius_m =
+        std::max(out[joint].radius_m, glm::length(Vec3(p.positions[v]) - out[joint].center_m));
+  });
+  std::erase_if(out, [](const JointBound& bound) { return bound.radius_m < 0.0; });
+  return out;
+}
+
 template <class T>
 Result<gpu::Buffer> filled(gpu::Device& device, const char* name, const std::vector<T>& data,
                            VkBufferUsageFlags usage) {
@@ -58,7 +87,8 @@ Result<gpu::Buffer> filled(gpu::Device& device, const char* name, const std::vec
 
 }  // namespace
 
-GpuPrimitive GeometryBuilder::add(const scene::Primitive& p, std::uint32_t material) {
+GpuPrimitive GeometryBuilder::add(const scene::Primitive& p, std::uint32_t material,
+                                  std::span<const scene::MeshLevel> levels) {
   GpuPrimitive g;
   g.topology = p.topology;
   g.first_index = static_cast<std::uint32_t>(indices_.size());
@@ -68,16 +98,37 @@ GpuPrimitive GeometryBuilder::add(const scene::Primitive& p, std::uint32_t mater
   g.material = material;
   largest_mesh_ = std::max(largest_mesh_, g.vertex_count);
   std::vector<std::uint32_t> indices = p.indices, order;
+  std::vector<std::vector<std::uint32_t>> coarser;
+  for (const scene::MeshLevel& level : levels) coarser.push_back(level.indices);
   if (p.topology == scene::Topology::kTriangles && p.joints.empty() && p.targets.empty()) {
     g.clusters = build_clusters(p.positions, indices);
     order = order_by_use(indices, p.positions.size());
+    std::vector<std::uint32_t> place(order.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
+    for (std::vector<std::uint32_t>& level : coarser)
+      for (std::uint32_t& index : level) index = place[index];
+  } else if (!coarser.empty()) {
+    // The coarsest level's vertices first, so that a level deforms no others.
+    std::vector<std::uint32_t> all;
+    for (std::size_t i = coarser.size(); i-- > 0;)
+      all.insert(all.end(), coarser[i].begin(), coarser[i].end());
+    all.insert(all.end(), indices.begin(), indices.end());
+    order = order_by_use(all, p.positions.size());
+    std::size_t at = 0;
+    const auto take = [&](std::vector<std::uint32_t>& out) {
+      std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(at), out.size(), out.begin());
+      at += out.size();
+    };
+    for (std::size_t i = coarser.size(); i-- > 0;) take(coarser[i]);
+    take(indices);
   } else {
     order.resize(p.positions.size());
     std::iota(order.begin(), order.end(), 0u);
   }
   indices_.insert(indices_.end(), indices.begin(), indices.end());
+  add_levels(g, coarser, levels);
   for (const std::uint32_t vertex : order) add_vertex(p, vertex);
-  add_skin(g, p);
+  add_skin(g, p, order);
   add_morphs(g, p);
   if (!p.bounds.empty()) {
     g.center_m = (p.bounds.min + p.bounds.max) * 0.5;
@@ -99,10 +150,26 @@ void GeometryBuilder::add_vertex(const scene::Primitive& p, std::uint32_t i) {
   surfaces_.push_back(s);
 }
 
-void GeometryBuilder::add_skin(GpuPrimitive& g, const scene::Primitive& p) {
+void GeometryBuilder::add_levels(GpuPrimitive& g,
+                                 std::span<const std::vector<std::uint32_t>> levels,
+                                 std::span<const scene::MeshLevel> from) {
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    GpuLevel& level = g.levels.emplace_back();
+    level.first_index = static_cast<std::uint32_t>(indices_.size());
+    level.index_count = static_cast<std::uint32_t>(levels[i].size());
+    for (const std::uint32_t index : levels[i])
+      level.vertex_count = std::max(level.vertex_count, index + 1);
+    level.error_m = from[i].error_m;
+    indices_.insert(indices_.end(), levels[i].begin(), levels[i].end());
+  }
+}
+
+void GeometryBuilder::add_skin(GpuPrimitive& g, const scene::Primitive& p,
+                               std::span<const std::uint32_t> order) {
   if (p.joints.empty()) return;
+  if (p.targets.empty()) g.joint_bounds = bounds_of_joints(p);
   g.first_skin = static_cast<std::uint32_t>(skin_.size());
-  for (std::size_t i = 0; i < p.positions.size(); ++i) {
+  for (const std::uint32_t i : order) {
     const auto& j = p.joints[i];
     skin_.push_back(
         {j[0] | std::uint32_t{j[1]} << 16, j[2] | std::uint32_t{j[3]} << 16, p.weights[i]});

@@ -2,9 +2,11 @@
 // Private to GpuScene; rendering thread only.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "engine/render/gpu_scene.hpp"
+#include "engine/scene/mesh_levels.hpp"
 
 namespace neritic::render {
 
@@ -14,15 +16,19 @@ struct GpuSceneGeometry {
 
 class GeometryBuilder {
  public:
-  // Appends the primitive's vertices, indices, skin and morph targets.
-  GpuPrimitive add(const scene::Primitive& primitive, std::uint32_t material);
+  // Appends the primitive's vertices, indices, skin and morph targets, and its coarser levels.
+  GpuPrimitive add(const scene::Primitive& primitive, std::uint32_t material,
+                   std::span<const scene::MeshLevel> levels = {});
   // Uploads the streams; nothing is added after it. Errors: a stream is larger than the device can
   // read, or there is no memory.
   Result<GpuSceneGeometry> finish(gpu::Device& device);
 
  private:
   void add_vertex(const scene::Primitive& primitive, std::uint32_t vertex);
-  void add_skin(GpuPrimitive& out, const scene::Primitive& primitive);
+  void add_skin(GpuPrimitive& out, const scene::Primitive& primitive,
+                std::span<const std::uint32_t> order);
+  void add_levels(GpuPrimitive& out, std::span<const std::vector<std::uint32_t>> levels,
+                  std::span<const scene::MeshLevel> from);
   void add_morphs(GpuPrimitive& out, const scene::Primitive& primitive);
   Status check_limits(const gpu::Device& device) const;
 

@@ -11,6 +11,8 @@
 
 namespace neritic::render {
 
+class SnowField;
+
 // A particle in the world.
 struct WorldParticle {
   Vec3 position_m{0.0}, velocity_m_s{0.0};
@@ -41,7 +43,9 @@ struct ViewParticles {
   double shutter_s = 0.0;
 };
 bool has_particles(const scene::Scene& scene);
-ViewParticles view_particles(const scene::MotionSource& motion, std::uint64_t seed,
-                             const ViewSet& views, double time_s, double snow_share = 1.0);
+// field: the snow's cells, kept from call to call.
+ViewParticles view_particles(const scene::MotionSource& motion, SnowField& field,
+                             std::uint64_t seed, const ViewSet& views, double time_s,
+                             double snow_share = 1.0);
 
 }  // namespace neritic::render

@@ -127,8 +127,10 @@ class Renderer {
 
   // Each declares its pass under a name that starts with prefix. References must live until the
   // graph has run. Errors: a pipeline cannot be made.
+  // need: how many vertices of each job are drawn, complete when the graph runs; nullptr: all.
   Result<DeformedGeometry> declare_deform(graph::FrameGraph& graph, const GpuScene& scene,
-                                          const FrameState& state);
+                                          const FrameState& state,
+                                          const std::vector<std::uint32_t>* need = nullptr);
   Result<GBuffer> declare_gbuffer(graph::FrameGraph& graph, const std::string& prefix,
                                   GBufferKind kind, const GpuScene& scene, const FrameState& state,
                                   const DeformedGeometry& deformed, const ViewSet& views,
@@ -150,9 +152,11 @@ class Renderer {
                                                 const shared::VisibilityParams& params,
                                                 graph::ImageHandle cascades,
                                                 const VisibilityKnobs& knobs);
-  // Light under waves on levels below a tile of the surface; once a frame.
+  // Light under waves on levels below a tile of the surface; once a frame and size. Which levels
+  // may change until the graph runs.
   Result<graph::ImageHandle> declare_caustics(graph::FrameGraph& graph,
-                                              const shared::CausticsParams& params);
+                                              const shared::CausticsParams& params,
+                                              const std::string& name = "caustics");
   // HDR picture of a surface G-buffer.
   Result<graph::ImageHandle> declare_shade(graph::FrameGraph& graph, const std::string& prefix,
                                            const ShadeInputs& inputs);

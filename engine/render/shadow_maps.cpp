@@ -74,14 +74,14 @@ std::vector<ViewSet> sun_views(const ViewSet& camera, const scene::SunShadows& s
 
 std::vector<ShadowMap> shadow_maps(const scene::Scene& scene, const GpuScene& gpu_scene,
                                    const FrameState& state, std::vector<ViewSet> views,
-                                   std::span<const std::uint8_t> of) {
+                                   DrawListOptions options) {
+  options.hide_back_faces = true;
   std::vector<ShadowMap> maps;
   for (ViewSet& set : views) {
     ShadowMap& map = maps.emplace_back();
     map.layer = static_cast<std::uint32_t>(maps.size() - 1);
     map.views = std::move(set);
-    map.draws = build_draw_list(scene, gpu_scene, state, map.views,
-                                {.hide_back_faces = true, .objects = of});
+    map.draws = build_draw_list(scene, gpu_scene, state, map.views, options);
     map.draws.blended.clear();
   }
   return maps;

@@ -27,10 +27,10 @@ struct ShadowMap {
 std::vector<ViewSet> sun_views(const ViewSet& camera, const scene::SunShadows& shadows,
                                const Vec3& to_sun);
 
-// Draw lists of these views, a layer each. of: flags by object, what is drawn; empty: all.
+// Draw lists of these views, a layer each. options: hide_back_faces is set anyway.
 std::vector<ShadowMap> shadow_maps(const scene::Scene& scene, const GpuScene& gpu_scene,
                                    const FrameState& state, std::vector<ViewSet> views,
-                                   std::span<const std::uint8_t> of = {});
+                                   DrawListOptions options = {});
 
 // Flags by object: 1 where something of the scene may move or deform it.
 std::vector<std::uint8_t> moving_objects(const scene::Scene& scene);

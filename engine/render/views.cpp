@@ -1,5 +1,7 @@
 #include "engine/render/views.hpp"
 
+#include <algorithm>
+
 #include "engine/core/check.hpp"
 
 namespace neritic::render {
@@ -42,6 +44,15 @@ std::array<shared::View, shared::kMaxViews> gpu_views(const ViewSet& set) {
   return out;
 }
 
+double largest_stretch(const Mat4& m) {
+  const Vec3 a(m[0]), b(m[1]), c(m[2]);
+  const double ab = std::abs(glm::dot(a, b)), bc = std::abs(glm::dot(b, c)),
+               ca = std::abs(glm::dot(c, a));
+  // Rounding of a turn's columns leaves their products near nought.
+  return std::sqrt(
+      std::max({glm::dot(a, a) + ab + ca, glm::dot(b, b) + ab + bc, glm::dot(c, c) + bc + ca}));
+}
+
 bool any_view_sees(const ViewSet& set, const Vec3& center_from_origin_m, double radius_m) {
   if (!(radius_m < 1e9)) return true;
   const Vec3 origin = set.origin_m();
@@ -64,6 +75,38 @@ bool any_view_sees(const ViewSet& set, const Vec3& center_from_origin_m, double 
     if (outside(p.y, p.z, t.top, 0.0) || outside(-p.y, p.z, -t.bottom, 0.0)) continue;
     return true;
   }
+  return false;
+}
+
+SphereCulling::SphereCulling(const ViewSet& set) {
+  const Vec3 origin = set.origin_m();
+  for (const ViewDesc& view : set.views) {
+    const FrustumTangents& t = view.tangents;
+    const Vec3 inward[5] = {{-1.0, view.lean, -t.right},
+                            {1.0, -view.lean, t.left},
+                            {0.0, -1.0, -t.top},
+                            {0.0, 1.0, t.bottom},
+                            {0.0, 0.0, -1.0}};
+    const Vec3 eye_m = view.world_from_view.position_m - origin;
+    auto& planes = views_.emplace_back();
+    for (std::size_t i = 0; i < 5; ++i) {
+      planes[i].normal = view.world_from_view.rotation * glm::normalize(inward[i]);
+      planes[i].offset_m = -glm::dot(planes[i].normal, eye_m);
+    }
+    planes[4].offset_m -= view.near_m;
+  }
+  if (set.within)
+    within_ =
+        Plane{set.within->normal, glm::dot(set.within->normal, origin) + set.within->offset_m};
+}
+
+bool SphereCulling::may_see(const Vec3& center_m, double radius_m) const {
+  const auto outside = [&](const Plane& plane) {
+    return glm::dot(plane.normal, center_m) + plane.offset_m < -radius_m;
+  };
+  if (within_ && outside(*within_)) return false;
+  for (const auto& planes : views_)
+    if (std::ranges::none_of(planes, outside)) return true;
   return false;
 }
 

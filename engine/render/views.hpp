@@ -55,6 +55,26 @@ std::array<shared::View, shared::kMaxViews> gpu_views(const ViewSet& set);
 // 5.4e-7; this is near four times that.
 inline constexpr double kFloatError = 2e-6;
 
+// No length grows by more than this under the matrix: the largest row sum of its Gram matrix bounds
+// the square of every stretch, sheared or not, and is exact for turns and even scales.
+double largest_stretch(const Mat4& m);
+
+// The same question for many spheres of one set, which this keeps as planes. A sphere that lies
+// past a corner may count as seen.
+class SphereCulling {
+ public:
+  explicit SphereCulling(const ViewSet& set);
+  bool may_see(const Vec3& center_from_origin_m, double radius_m) const;
+
+ private:
+  struct Plane {
+    Vec3 normal{0.0};  // unit, inwards
+    double offset_m = 0.0;
+  };
+  std::vector<std::array<Plane, 5>> views_;
+  std::optional<Plane> within_;
+};
+
 // True where a sphere (relative to the set's origin) can be in any view.
 bool any_view_sees(const ViewSet& set, const Vec3& center_from_origin_m, double radius_m);
 

@@ -20,6 +20,8 @@ struct CausticsParams {
   float tile_m;
   float first_m;    // depth of the first level
   float step;       // depth of a level over that of the one before
+  uint first_level;  // levels that something lies at: the others are even light
+  uint end_level;
   vec3 travel_air;  // unit, the way sunlight travels above the surface
   CausticWave waves[32];
 };
@@ -27,6 +29,10 @@ struct CausticsParams {
 // Depths of the levels of pictures, m: kCausticFirst_m kCausticStep^i. Between them the picture is
 // blended, beyond them the last stays.
 NERITIC_CONST uint kCausticLevels = 8;
+// The image's layers: four levels each, of which the last is the next layer's first, so that a place
+// between two levels is one sample. Level i is channel i % 3 of layer i / 3.
+NERITIC_CONST uint kCausticLayers = 3;
+NERITIC_CONST uint kCausticLayerStep = 3;
 NERITIC_CONST float kCausticFirst_m = 0.4f;
 NERITIC_CONST float kCausticStep = 1.6f;
 // A ray's energy, in whole numbers, so that sums do not depend on their order and none is lost: the
@@ -34,7 +40,7 @@ NERITIC_CONST float kCausticStep = 1.6f;
 NERITIC_CONST uint kCausticPart = 64;
 NERITIC_CONST uint kCausticsParams = 0;
 NERITIC_CONST uint kCausticsSums = 1;
-NERITIC_CONST uint kCausticsOut = 2;  // resolve: rgba16f, two layers of four levels
+NERITIC_CONST uint kCausticsOut = 2;  // resolve: rgba16f
 
 NERITIC_SHARED_END
 #endif

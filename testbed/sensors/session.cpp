@@ -19,6 +19,7 @@ struct FrameWork {
   TimeNs begun_ns = 0;
   std::uint32_t frame = 0;  // the request's
   render::FrameState state;
+  std::vector<std::uint32_t> deform_need;  // see FrameParts
   std::vector<scene::MotionAt> poses;
   // A picture: of a camera, or of a view set.
   struct Picture {
@@ -51,6 +52,7 @@ Result<std::unique_ptr<Session>> Session::create(gpu::Device& device, scene::Sce
                                                             session->renderer_->material_layout()));
   NERITIC_TRY(EchoTables tables, EchoTables::create(device, session->scene_));
   session->sun_maps_ = std::make_unique<SunMaps>();
+  session->snow_ = std::make_unique<render::SnowField>();
   session->moving_ = render::moving_objects(session->scene_);
   for (const std::uint8_t moves : session->moving_) session->still_.push_back(moves ? 0 : 1);
   session->echo_tables_ = std::make_unique<EchoTables>(std::move(tables));
@@ -119,11 +121,16 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
   if (request.capture.poses && request.capture.to_host)
     work.poses = motions_of(participants_of(scene_), motion, request.time_s);
   NERITIC_TRY(const render::DeformedGeometry deformed,
-              renderer_->declare_deform(graph, *gpu_scene_, work.state));
-  const FrameParts parts{
-      graph,      device_,    *renderer_, scene_,    *gpu_scene_,
-      motion,     work.state, deformed,   readback_, request.seed.value_or(scene_.seed),
-      work.light, *sun_maps_, moving_,    still_,    request.frame};
+              renderer_->declare_deform(graph, *gpu_scene_, work.state, &work.deform_need));
+  const FrameParts parts{graph,         device_,
+                         *renderer_,    scene_,
+                         *gpu_scene_,   motion,
+                         work.state,    deformed,
+                         readback_,     request.seed.value_or(scene_.seed),
+                         work.light,    *sun_maps_,
+                         moving_,       still_,
+                         request.frame, work.deform_need,
+                         *snow_};
   const auto add = [&](const std::string& label, const ViewsRequest& set, std::size_t index,
                        auto& works, std::vector<SensorFrame::Views>& out) -> Status {
     works.push_back(std::make_unique<FrameWork::Picture>());

@@ -15,6 +15,7 @@
 #include "engine/gpu/frames.hpp"
 #include "engine/graph/frame_graph.hpp"
 #include "engine/render/renderer.hpp"
+#include "engine/render/snow_field.hpp"
 #include "testbed/sensors/frame_request.hpp"
 #include "testbed/sensors/frame_result.hpp"
 #include "testbed/sensors/readback.hpp"
@@ -78,6 +79,7 @@ class Session {
   std::map<std::size_t, std::vector<glm::dvec2>> lens_maps_;  // by camera, as far as asked for
   ReadbackPool readback_;
   std::unique_ptr<SunMaps> sun_maps_;
+  std::unique_ptr<render::SnowField> snow_;
   std::vector<std::uint8_t> moving_, still_;  // flags by object
   std::vector<double> lamp_cd_;  // of lamps at their full intensity, once one was dimmed
   std::string plan_text_, plan_graphviz_;

@@ -24,8 +24,9 @@ render::ViewSet head_views(const scene::Sonar& sonar, const HeadState& head,
 
 // The geometry G-buffer of work.views.
 Result<render::GBuffer> declare_geometry(const FrameParts& frame, const std::string& prefix,
-                                         const render::DrawListOptions& options, ViewsWork& work,
+                                         render::DrawListOptions options, ViewsWork& work,
                                          const render::GBufferParts& parts = {}) {
+  options.deform_need = &frame.deform_need;
   work.draws =
       render::build_draw_list(frame.scene, frame.gpu_scene, frame.state, work.views, options);
   return frame.renderer.declare_gbuffer(frame.graph, prefix, render::GBufferKind::kGeometry,

@@ -11,13 +11,14 @@ namespace neritic::testbed {
 namespace {
 
 // Hash of what a layer shows; never 0.
-std::uint64_t content_of(std::uint64_t still, const render::ViewSet& set) {
+std::uint64_t content_of(std::uint64_t still, const render::ViewSet& set, double mesh_error_px) {
   const render::ViewDesc& view = set.views.front();
   Hash64 hash;
   hash.add(still);
   hash.add(view.world_from_view);
   hash.add(view.tangents.left);
   hash.add(view.near_m);
+  hash.add(mesh_error_px);
   return hash.value() | 1;
 }
 
@@ -44,6 +45,10 @@ Result<graph::ImageHandle> SunMaps::declare(const FrameParts& frame, const std::
                                      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
                             .array_view = true}));
   }
+  const auto draws = [&](std::span<const std::uint8_t> objects) {
+    return render::DrawListOptions{
+        .objects = objects, .mesh_error_px = work.mesh_error_px, .deform_need = &frame.deform_need};
+  };
   FrameLight& light = frame.light;
   if (!light.still_known) {
     light.still_known = true;
@@ -59,14 +64,14 @@ Result<graph::ImageHandle> SunMaps::declare(const FrameParts& frame, const std::
   std::vector<std::uint32_t> stale_layers;
   std::vector<std::uint64_t> content;
   for (std::uint32_t i = 0; i < layers; ++i) {
-    content.push_back(content_of(light.still, work.cascades[i]));
+    content.push_back(content_of(light.still, work.cascades[i], work.mesh_error_px));
     if (kept.drawn[i] == content[i]) continue;
     stale.push_back(work.cascades[i]);
     stale_layers.push_back(i);
   }
   if (!stale.empty()) {
     work.still_maps = render::shadow_maps(frame.scene, frame.gpu_scene, frame.state,
-                                          std::move(stale), frame.still);
+                                          std::move(stale), draws(frame.still));
     for (std::size_t i = 0; i < stale_layers.size(); ++i)
       work.still_maps[i].layer = stale_layers[i];
     NERITIC_TRY(maps, frame.renderer.declare_shadow_maps(
@@ -75,8 +80,8 @@ Result<graph::ImageHandle> SunMaps::declare(const FrameParts& frame, const std::
                           {.image = image, .drawn = [&kept, content] { kept.drawn = content; }}));
   }
   frame.graph.output(maps, graph::Access::kSampledCompute);
-  work.moving_maps =
-      render::shadow_maps(frame.scene, frame.gpu_scene, frame.state, work.cascades, frame.moving);
+  work.moving_maps = render::shadow_maps(frame.scene, frame.gpu_scene, frame.state, work.cascades,
+                                         draws(frame.moving));
   std::erase_if(work.moving_maps,
                 [](const render::ShadowMap& map) { return map.draws.opaque.empty(); });
   if (work.moving_maps.empty()) return maps;

@@ -20,15 +20,31 @@ Status check_size(const gpu::Device& device, const std::string& what,
   return {};
 }
 
+std::uint32_t times(std::uint32_t named, double factor, double least, double most) {
+  return static_cast<std::uint32_t>(std::clamp(std::round(named * factor), least, most));
+}
+
+// Pixels by which coarser meshes may differ (scene::MeshLevel); of the sun's maps texels. None where
+// each pixel has a shadow of its own.
+double mesh_error_px(const scene::PictureDetail& detail) {
+  return 0.5 * (static_cast<double>(detail.visibility_step) - 1.0);
+}
+
+// Texels of the lamps' maps by which coarser meshes may differ.
+constexpr double kLampMeshError_px = 0.5;
+
 // Caustics and the lamps' maps, which all cameras share.
 Status declare_shared_light(const FrameParts& frame, const ViewsWork& work,
+                            const render::DrawList& draws, const scene::PictureDetail& detail,
                             shared::Lighting& lighting, render::LightImages& light) {
   const scene::Scene& scene = frame.scene;
   FrameLight& shared_light = frame.light;
   if (!shared_light.lamps_known) {
     shared_light.lamps_known = true;
     NERITIC_TRY(auto views, render::lamp_views(scene, frame.state));
-    shared_light.lamps = render::shadow_maps(scene, frame.gpu_scene, frame.state, std::move(views));
+    shared_light.lamps = render::shadow_maps(
+        scene, frame.gpu_scene, frame.state, std::move(views),
+        {.mesh_error_px = kLampMeshError_px, .deform_need = &frame.deform_need});
     if (!shared_light.lamps.empty()) {
       NERITIC_TRY(shared_light.lamp_maps,
                   frame.renderer.declare_shadow_maps(frame.graph, "lamp shadows", frame.gpu_scene,
@@ -43,25 +59,32 @@ Status declare_shared_light(const FrameParts& frame, const ViewsWork& work,
   // Only a beam throws a net, and only through a surface.
   if (!scene.sun || !scene.sun->caustics || !scene.water || !(lighting.direct_share > 0.0f))
     return {};
-  const scene::Caustics& caustics = *scene.sun->caustics;
-  if (!shared_light.caustics) {
-    NERITIC_TRY(
-        shared_light.caustics,
-        frame.renderer.declare_caustics(
-            frame.graph, render::caustics_params(caustics, render::to_sun_in_air(*scene.sun),
-                                                 frame.state.time_s, scene.seed)));
+  scene::Caustics caustics = *scene.sun->caustics;
+  caustics.texels = times(caustics.texels, detail.shadow_size, 16, 2048);
+  const double origin_depth_m = static_cast<double>(lighting.origin_depth_m);
+  const auto [first, end] =
+      render::caustic_levels(origin_depth_m - draws.highest_m, origin_depth_m - draws.lowest_m);
+  const auto [found, is_new] = shared_light.caustics.try_emplace(caustics.texels);
+  FrameLight::Net& net = found->second;
+  if (is_new) {
+    net.params = render::caustics_params(caustics, render::to_sun_in_air(*scene.sun),
+                                         frame.state.time_s, scene.seed);
+    net.params.first_level = first;
+    net.params.end_level = end;
+    const std::string name = caustics.texels == scene.sun->caustics->texels
+                                 ? "caustics"
+                                 : fmt::format("caustics of {} texels", caustics.texels);
+    NERITIC_TRY(net.image, frame.renderer.declare_caustics(frame.graph, net.params, name));
   }
+  net.params.first_level = std::min(net.params.first_level, first);
+  net.params.end_level = std::max(net.params.end_level, end);
   lighting.terms |= shared::kLightCaustics;
-  light.caustics = shared_light.caustics;
+  light.caustics = net.image;
   lighting.caustic_tile_m = static_cast<float>(caustics.tile_m);
   const Vec3 origin_m = work.views.origin_m();
   lighting.caustic_origin_m = {static_cast<float>(std::fmod(origin_m.x, caustics.tile_m)),
                                static_cast<float>(std::fmod(origin_m.z, caustics.tile_m))};
   return {};
-}
-
-std::uint32_t times(std::uint32_t named, double factor, double least, double most) {
-  return static_cast<std::uint32_t>(std::clamp(std::round(named * factor), least, most));
 }
 
 std::uint32_t visibility_step(const scene::Scene& scene, const scene::PictureDetail& detail) {
@@ -72,6 +95,7 @@ std::uint32_t visibility_step(const scene::Scene& scene, const scene::PictureDet
 // Declares the passes that find what stands in the light's way, and sets the terms that are there.
 Result<render::LightImages> declare_light(const FrameParts& frame, const std::string& prefix,
                                           const render::GBuffer& g, const render::ViewSet& views,
+                                          const render::DrawList& draws,
                                           const scene::PictureDetail& detail, ViewsWork& work,
                                           shared::Lighting& lighting) {
   render::LightImages light;
@@ -91,7 +115,7 @@ Result<render::LightImages> declare_light(const FrameParts& frame, const std::st
     knobs.cascades = settings.cascades;
     NERITIC_TRY(cascades, frame.sun_maps.declare(frame, prefix, work));
   }
-  NERITIC_TRY_STATUS(declare_shared_light(frame, work, lighting, light));
+  NERITIC_TRY_STATUS(declare_shared_light(frame, work, draws, detail, lighting, light));
   if (!cascades && knobs.occlusion_taps == 0) return light;
   lighting.terms |= shared::kLightSeen;
   NERITIC_TRY(light.seen, frame.renderer.declare_visibility(
@@ -173,7 +197,7 @@ Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::str
               render::make_lighting(frame.scene, frame.state, views.origin_m(), request.exposure,
                                     frame.gpu_scene.has_emission()));
   NERITIC_TRY(const render::LightImages light,
-              declare_light(frame, prefix, g, views, detail, work, lighting));
+              declare_light(frame, prefix, g, views, draws, detail, work, lighting));
   graph::ImageHandle scattered;
   std::optional<shared::Waves> waves;
   if (lighting.terms & shared::kLightWaves) {
@@ -202,8 +226,8 @@ Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::str
   }
   if (render::has_particles(frame.scene)) {
     const double time_s = frame.state.time_s, step_s = frame.state.next_time_s - time_s;
-    work.particles =
-        render::view_particles(frame.motion, frame.scene.seed, views, time_s, detail.particles);
+    work.particles = render::view_particles(frame.motion, frame.snow, frame.scene.seed, views,
+                                            time_s, detail.particles);
     const double shutter = step_s > 0.0 ? work.particles.shutter_s / step_s : 0.0;
     NERITIC_TRY(hdr, frame.renderer.water().declare_particles(frame.graph, prefix, hdr, g, views,
                                                               lighting, work.particles.particles,
@@ -269,16 +293,22 @@ Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::str
                work.camera->height};
       work.boxes.push_back(instance_boxes(frame.scene, frame.state, view.world_from_view, map));
     }
+  // Arrays at the host are measurements: of the meshes as they are, and so is a picture beside
+  // them.
+  const bool arrays = capture.to_host && (capture.geometry() || capture.motion);
   const std::string prefix = request.name + " ";
   const auto declare = [&](const std::string& name, render::GBufferKind kind,
                            const render::ViewSet& views, render::DrawList& draws,
-                           const render::GBufferParts& parts) {
-    draws = render::build_draw_list(frame.scene, frame.gpu_scene, frame.state, views);
+                           const render::GBufferParts& parts, double mesh_error_px) {
+    draws = render::build_draw_list(
+        frame.scene, frame.gpu_scene, frame.state, views,
+        {.mesh_error_px = mesh_error_px, .deform_need = &frame.deform_need});
     return frame.renderer.declare_gbuffer(frame.graph, name, kind, frame.gpu_scene, frame.state,
                                           frame.deformed, views, draws, parts);
   };
   // Lens and image sensor work on the whole picture.
   const bool coarse = capture.color && request.detail.resolution < 1.0 && !request.camera;
+  work.mesh_error_px = arrays && !coarse ? 0.0 : mesh_error_px(request.detail);
   SensorFrame::Views out{.near_m = work.views.views.front().near_m,
                          .width = work.views.width,
                          .height = work.views.height,
@@ -289,7 +319,8 @@ Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::str
     const bool surface = capture.color && !coarse;
     NERITIC_TRY(
         g, declare(prefix, surface ? render::GBufferKind::kSurface : render::GBufferKind::kShape,
-                   work.views, work.draws, surface ? render::GBufferParts{} : parts_of(capture)));
+                   work.views, work.draws, surface ? render::GBufferParts{} : parts_of(capture),
+                   arrays ? 0.0 : mesh_error_px(request.detail)));
     out.depth = g.depth;
     out.normal = g.normal;
     out.label = g.label;
@@ -300,7 +331,7 @@ Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::str
     work.shaded_views.height = shaded(work.views.height, request.detail.resolution);
     NERITIC_TRY(const render::GBuffer shading,
                 declare(prefix + "shaded ", render::GBufferKind::kSurface, work.shaded_views,
-                        work.shaded_draws, {}));
+                        work.shaded_draws, {}, mesh_error_px(request.detail)));
     NERITIC_TRY(out.color, declare_color(frame, prefix, shading, work.shaded_views,
                                          work.shaded_draws, request, work));
   } else if (capture.color) {

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
+#include "engine/render/caustic_waves.hpp"
 #include "engine/render/particles.hpp"
 #include "engine/render/renderer.hpp"
+#include "engine/render/snow_field.hpp"
 #include "testbed/sensors/frame_request.hpp"
 #include "testbed/sensors/frame_result.hpp"
 #include "testbed/sensors/readback.hpp"
@@ -20,7 +23,13 @@ namespace neritic::testbed {
 struct FrameLight {
   bool lamps_known = false;
   std::vector<render::ShadowMap> lamps;  // those with shadows
-  graph::ImageHandle lamp_maps, caustics;
+  graph::ImageHandle lamp_maps;
+  // By texels a side; their levels are those of all views that use them.
+  struct Net {
+    shared::CausticsParams params{};
+    graph::ImageHandle image;
+  };
+  std::map<std::uint32_t, Net> caustics;
   bool still_known = false;
   std::uint64_t still = 0;  // render::still_hash
 };
@@ -42,13 +51,17 @@ struct FrameParts {
   // Flags by object: what may move, and its opposite.
   std::span<const std::uint8_t> moving, still;
   std::uint32_t frame = 0;  // the request's: noise follows from it
+  // Vertices of each FrameState::deforms that some view draws (DrawListOptions).
+  std::vector<std::uint32_t>& deform_need;
+  render::SnowField& snow;
 };
 
 // A view set in one frame: data that the passes borrow, and the buffers that the host reads.
 struct ViewsWork {
   render::ViewSet views;
   Capture capture;
-  std::string owner;  // unlike a view's name no two sets of a frame share it
+  double mesh_error_px = 0.0;  // of its meshes, in its own pixels and in texels of its shadows
+  std::string owner;           // unlike a view's name no two sets of a frame share it
   render::DrawList draws;
   // Where capture asks for arrays and shading has fewer pixels: the shading's own.
   render::ViewSet shaded_views;

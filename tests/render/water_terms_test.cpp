@@ -8,6 +8,7 @@
 #include "engine/render/particles.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/render/sea_waves.hpp"
+#include "engine/render/snow_field.hpp"
 #include "shared/bubble.h"
 #include "tests/support/gpu_fixture.hpp"
 
@@ -154,6 +155,29 @@ TEST(Snow, StaysInTheWaterWhileTheCameraMoves) {
   const auto after = snow_around(drifting, 5, Vec3(0.2, -10.0, 0.0), 2.0);
   ASSERT_EQ(before.size(), after.size());
   EXPECT_NEAR(after[0].position_m.x - before[0].position_m.x, 0.2, 1e-9);
+}
+
+TEST(Snow, KeptCellsGiveTheGrainsOfCellsThatAreMadeAnew) {
+  scene::Snow snow{.density_m3 = 200.0, .range_m = 1.5};
+  SnowField field;
+  const auto check = [&](const Vec3& center_m, double time_s, std::uint64_t seed) {
+    std::vector<WorldParticle> kept;
+    field.append(snow, seed, center_m, time_s, nullptr, 0.8, kept);
+    const auto made = snow_around(snow, seed, center_m, time_s, nullptr, 0.8);
+    ASSERT_EQ(kept.size(), made.size());
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      EXPECT_EQ(kept[i].position_m, made[i].position_m);
+      EXPECT_EQ(kept[i].radius_m, made[i].radius_m);
+      EXPECT_EQ(kept[i].opacity, made[i].opacity);
+      EXPECT_EQ(kept[i].seed, made[i].seed);
+    }
+  };
+  for (int i = 0; i < 300; ++i) check(Vec3(0.2 * i, -20.0 + 0.01 * i, -0.1 * i), 0.05 * i, 5);
+  // What lies behind is forgotten.
+  EXPECT_LT(field.cells(), 20000u);
+  check(Vec3(0.0, -20.0, 0.0), 0.0, 6);
+  snow.density_m3 = 900.0;
+  check(Vec3(0.0, -20.0, 0.0), 0.0, 6);
 }
 
 TEST(Snow, IsFiniteFarOutAndNoneIsAboveTheWater) {

@@ -169,7 +169,7 @@ Result<OpticsPoint> caustics_point(gpu::Device& device, std::uint32_t texels, in
     NERITIC_TRY(const graph::ImageHandle image, renderer->declare_caustics(graph, params));
     NERITIC_TRY(const testbed::Readback pin,
                 pool.declare(graph, device, "caustics", image, render::kHdrFormat, texels, texels,
-                             shared::kCausticLevels / 4));
+                             shared::kCausticLayers));
     NERITIC_TRY(gpu::Commands * commands, frames->begin());
     NERITIC_TRY(const graph::Plan* plan, executor.run(graph, *commands));
     (void)plan;
@@ -185,9 +185,11 @@ Result<OpticsPoint> caustics_point(gpu::Device& device, std::uint32_t texels, in
     const std::uint32_t part = texels / kBins;
     for (std::uint32_t y = 0; y < texels; ++y)
       for (std::uint32_t x = 0; x < texels; ++x) {
-        const std::size_t texel = (std::size_t{kLevel / 4} * texels + y) * texels + x;
+        const std::size_t texel =
+            (std::size_t{kLevel / shared::kCausticLayerStep} * texels + y) * texels + x;
         light[(y / part) * kBins + x / part] +=
-            glm::unpackHalf1x16(halves[texel * 4 + kLevel % 4]) / (double(part) * part);
+            glm::unpackHalf1x16(halves[texel * 4 + kLevel % shared::kCausticLayerStep]) /
+            (double(part) * part);
       }
   }
   const std::vector<double> truth = caustics_truth(params, rays);

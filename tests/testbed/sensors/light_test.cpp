@@ -110,7 +110,7 @@ TEST_F(Light, WhatIsNotNamedIsNotInTheGraph) {
     EXPECT_EQ(plan.find(pass), std::string::npos) << pass;
 }
 
-// Light on the levels below a tile, a layer of four channels for four levels.
+// Light on the levels below a tile.
 std::vector<float> thrown(gpu::Device& device, const shared::CausticsParams& params) {
   auto renderer = render::Renderer::create(device);
   auto frames = gpu::Frames::create(device);
@@ -121,7 +121,8 @@ std::vector<float> thrown(gpu::Device& device, const shared::CausticsParams& par
   EXPECT_TRUE(image.ok());
   ReadbackPool pool;
   const std::uint32_t n = params.texels;
-  auto pin = pool.declare(graph, device, "caustics", *image, render::kHdrFormat, n, n, 2);
+  auto pin = pool.declare(graph, device, "caustics", *image, render::kHdrFormat, n, n,
+                          shared::kCausticLayers);
   EXPECT_TRUE(pin.ok());
   auto commands = (*frames)->begin();
   EXPECT_TRUE(commands.ok());
@@ -138,7 +139,8 @@ std::vector<float> thrown(gpu::Device& device, const shared::CausticsParams& par
 double mean_of_level(const std::vector<float>& light, std::uint32_t n, std::uint32_t level) {
   double sum = 0.0;
   for (std::size_t i = 0; i < std::size_t{n} * n; ++i)
-    sum += light[(std::size_t{level / 4} * n * n + i) * 4 + level % 4];
+    sum += light[(std::size_t{level / shared::kCausticLayerStep} * n * n + i) * 4 +
+                 level % shared::kCausticLayerStep];
   return sum / (double(n) * n);
 }
 

@@ -1,0 +1,130 @@
+#include "engine/render/snow_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "engine/core/random.hpp"
+
+namespace neritic::render {
+namespace {
+
+constexpr std::uint64_t kSnowStream = 0x736e6f77;
+// Mean number of particles in a cell of the lattice.
+constexpr double kCellMean = 24.0;
+// Particles fade in between these distances from the eye: nearer there is the camera's housing.
+constexpr double kNearest_m = 0.20, kNear_m = 0.80;
+// Calls after which a cell that none of them saw is forgotten: several views take turns.
+constexpr std::uint64_t kKeptCalls = 64;
+
+std::uint64_t word(std::int64_t cell) {
+  return static_cast<std::uint64_t>(cell);
+}
+
+// A normal number of two uniform ones (Box and Muller 1958).
+double normal(double u, double v) {
+  return std::sqrt(-2.0 * std::log(1.0 - u)) * std::cos(2.0 * kPi * v);
+}
+
+double smooth(double low, double high, double x) {
+  const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+double cell_size_m(double density_m3) {
+  return std::clamp(std::cbrt(kCellMean / density_m3), 0.1, 2.0);
+}
+
+}  // namespace
+
+std::size_t SnowField::HashOf::operator()(const Place& p) const {
+  return static_cast<std::size_t>(mix64(word(p.x) ^ mix64(word(p.y) ^ mix64(word(p.z)))));
+}
+
+const std::vector<SnowField::Grain>& SnowField::grains_of(const Place& place) {
+  const auto [found, is_new] = cells_.try_emplace(place);
+  Cell& cell = found->second;
+  cell.used = calls_;
+  if (!is_new) return cell.grains;
+  const double cell_m = cell_size_m(density_m3_);
+  // A number of slots, each taken by chance: the count has a binomial spread.
+  const double mean = density_m3_ * cell_m * cell_m * cell_m;
+  const auto slots = static_cast<std::uint64_t>(std::ceil(2.0 * mean + 1.0));
+  const double taken = mean / static_cast<double>(slots);
+  const RandomKey key{seed_, kSnowStream ^ mix64(word(place.y)),
+                      mix64(word(place.x)) ^ (word(place.z) << 1)};
+  for (std::uint64_t i = 0; i < slots; ++i) {
+    if (random_uniform(key, 8 * i) >= taken) continue;
+    Grain grain;
+    grain.look = static_cast<std::uint32_t>(random_bits(key, 8 * i + 7));
+    grain.place_m = cell_m * (Vec3(place.x, place.y, place.z) +
+                              Vec3(random_uniform(key, 8 * i + 1), random_uniform(key, 8 * i + 2),
+                                   random_uniform(key, 8 * i + 3)));
+    grain.radius_m = 0.5 * diameter_m_ *
+                     std::exp(spread_ * std::clamp(normal(random_uniform(key, 8 * i + 4),
+                                                          random_uniform(key, 8 * i + 5)),
+                                                   -2.5, 2.0));
+    grain.opacity = 0.10 + 0.50 * random_uniform(key, 8 * i + 6);
+    cell.grains.push_back(grain);
+  }
+  return cell.grains;
+}
+
+void SnowField::forget_unused() {
+  std::erase_if(cells_, [&](const auto& cell) { return cell.second.used + kKeptCalls < calls_; });
+}
+
+void SnowField::append(const scene::Snow& snow, std::uint64_t seed, const Vec3& center_m,
+                       double time_s, const ViewSet* views, double share,
+                       std::vector<WorldParticle>& out) {
+  if (!(snow.density_m3 > 0.0 && share > 0.0)) return;
+  if (seed != seed_ || snow.density_m3 != density_m3_ || snow.diameter_m != diameter_m_ ||
+      snow.spread != spread_) {
+    cells_.clear();
+    seed_ = seed;
+    density_m3_ = snow.density_m3;
+    diameter_m_ = snow.diameter_m;
+    spread_ = snow.spread;
+  }
+  ++calls_;
+  const double cell_m = cell_size_m(snow.density_m3);
+  const double half_m = 0.5 * std::sqrt(3.0) * cell_m;  // of a cell's diagonal
+  const double widest_m = 0.5 * snow.diameter_m * std::exp(2.0 * snow.spread) + 0.02;
+  const Vec3 drift_m = snow.drift_m_s * time_s;
+  const Vec3 center = center_m - drift_m;  // in the water's own frame
+  const auto low = [&](int axis) {
+    return static_cast<std::int64_t>(std::floor((center[axis] - snow.range_m) / cell_m));
+  };
+  const auto high = [&](int axis) {
+    return static_cast<std::int64_t>(std::floor((center[axis] + snow.range_m) / cell_m));
+  };
+  std::optional<SphereCulling> culling;
+  if (views) culling.emplace(*views);
+  std::size_t seen = 0;
+  for (std::int64_t y = low(1); y <= high(1); ++y)
+    for (std::int64_t z = low(2); z <= high(2); ++z)
+      for (std::int64_t x = low(0); x <= high(0); ++x) {
+        // Most cells lie beside or behind the views, or out of range.
+        const Vec3 middle = cell_m * (Vec3(x, y, z) + 0.5) - center;
+        const double reach_m = snow.range_m + half_m;
+        if (glm::dot(middle, middle) >= reach_m * reach_m) continue;
+        if (culling && !culling->may_see(middle + center_m - views->origin_m(), half_m + widest_m))
+          continue;
+        ++seen;
+        for (const Grain& grain : grains_of({x, y, z})) {
+          if (!(grain.look * 0x1p-32 < share)) continue;
+          const Vec3 at = grain.place_m - center;
+          const double range_m = glm::length(at);
+          const Vec3 position = center_m + at;
+          if (range_m >= snow.range_m || position.y >= 0.0) continue;
+          out.push_back({position, snow.drift_m_s, grain.radius_m,
+                         grain.opacity * (1.0 - smooth(0.7 * snow.range_m, snow.range_m, range_m)) *
+                             smooth(kNearest_m, kNear_m, range_m),
+                         shared::kParticleSnow, grain.look});
+        }
+      }
+  // Cells out of sight are let go of once they are more than those in sight.
+  if (cells_.size() > 4 * seen + 1024) forget_unused();
+}
+
+}  // namespace neritic::render
