@@ -206,6 +206,16 @@ Result<std::size_t> mxtp_length(Bytes stream) {
   return kMxtpHeader + header.payload;
 }
 
+void put_mxtp_number(std::span<std::byte> datagram, std::uint32_t sample, std::uint32_t time_ms) {
+  NERITIC_CHECK(datagram.size() >= kMxtpHeader, "{} bytes", datagram.size());
+  const auto put = [&](std::size_t at, std::uint32_t value) {
+    for (std::size_t i = 0; i < 4; ++i)
+      datagram[at + i] = static_cast<std::byte>(value >> (24 - 8 * i));
+  };
+  put(6, sample);
+  put(12, time_ms);
+}
+
 std::vector<std::byte> encode_mxtp(MxtpHeader header, std::span<const MxtpPose> poses) {
   NERITIC_CHECK(poses.size() <= 255, "{} poses", poses.size());
   std::vector<std::byte> out;

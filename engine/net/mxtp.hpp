@@ -93,6 +93,9 @@ Result<MxtpDatagram> decode_mxtp(Bytes bytes);
 // kBadInput: no datagram begins there.
 Result<std::size_t> mxtp_length(Bytes stream);
 
+// Puts another number and time into a datagram. Precondition: it is a whole header at least.
+void put_mxtp_number(std::span<std::byte> datagram, std::uint32_t sample, std::uint32_t time_ms);
+
 // Type 02, one datagram. Precondition: at most 255 poses.
 std::vector<std::byte> encode_mxtp(MxtpHeader header, std::span<const MxtpPose> poses);
 

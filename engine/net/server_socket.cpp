@@ -1,14 +1,13 @@
 #include "engine/net/server_socket.hpp"
 
 #include <sys/eventfd.h>
-#include <sys/resource.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <thread>
 
 #include "engine/core/refusal.hpp"
+#include "engine/core/thread_urgency.hpp"
 #include "engine/net/rate.hpp"
 #include "engine/net/zmq_parts.hpp"
 
@@ -20,8 +19,6 @@ constexpr int kQueuedMessages = 64;   // of each client, each way; bytes are the
 constexpr int kBacklog = 1024;        // connections that wait for the library
 constexpr int kHeartbeat_ms = 5000, kDead_ms = 15000;
 constexpr TimeNs kLook_ns = 100'000'000;  // between two looks of the guard
-// The library's threads give way to the dive's: under a flood of strangers it keeps its steps.
-constexpr int kNice = 5;
 constexpr const char* kMonitor = "inproc://neritic.monitor";
 constexpr const char* kZap = "inproc://zeromq.zap.01";
 
@@ -100,8 +97,9 @@ void ServerSocket::Parts::configure() {
 }
 
 Status ServerSocket::Parts::open() {
-  // On the thread that calls this: those of the library inherit its priority.
-  setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
+  // On the thread that calls this: those of the library inherit its priority and give way to the
+  // dive's, which keeps its steps under a flood of strangers.
+  set_urgency(ThreadUrgency::kInput);
   if (options.keys) {
     zap.reset(zmq_socket(context.get(), ZMQ_REP));
     if (zmq_bind(zap.get(), kZap) != 0)

@@ -6,8 +6,10 @@
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -20,6 +22,36 @@ namespace {
 constexpr std::size_t kBatch = 64, kStreamRead = 64 << 10;
 constexpr int kWait_ms = 1000;
 constexpr TimeNs kRetry_ns = 1'000'000'000;
+// A stamp that is older says that the clock was set.
+constexpr TimeNs kMostWaited_ns = 1'000'000'000;
+constexpr std::size_t kControl = 64;  // bytes: the count of drops, and a stamp
+
+TimeNs ns_of(const timespec& time) {
+  return TimeNs{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
+// On the clock of the kernel's stamps.
+TimeNs wall_ns() {
+  timespec time{};
+  (void)::clock_gettime(CLOCK_REALTIME, &time);
+  return ns_of(time);
+}
+
+// What the kernel says of a datagram; what it does not say stays as it is.
+void read_control(msghdr& message, std::uint64_t& drops, TimeNs& stamp_ns) {
+  for (cmsghdr* c = CMSG_FIRSTHDR(&message); c; c = CMSG_NXTHDR(&message, c)) {
+    if (c->cmsg_level != SOL_SOCKET) continue;
+    if (c->cmsg_type == SO_RXQ_OVFL) {
+      std::uint32_t count = 0;
+      std::memcpy(&count, CMSG_DATA(c), sizeof count);
+      drops = count;
+    } else if (c->cmsg_type == SCM_TIMESTAMPNS) {
+      timespec stamp{};
+      std::memcpy(&stamp, CMSG_DATA(c), sizeof stamp);
+      stamp_ns = ns_of(stamp);
+    }
+  }
+}
 
 sockaddr_in system_address(const Address& address) {
   sockaddr_in out{};
@@ -70,6 +102,7 @@ Result<UdpReceiver> UdpReceiver::bind(const Address& address) {
   if (!socket.open()) return socket_error(address, "no socket", errno);
   set(socket, SOL_SOCKET, SO_RCVBUF, kReceiveQueue);
   set(socket, SOL_SOCKET, SO_RXQ_OVFL, 1);
+  set(socket, SOL_SOCKET, SO_TIMESTAMPNS, 1);
   NERITIC_TRY_STATUS(bind_to(socket, address));
   UdpReceiver out(std::move(socket));
   out.buffer_.resize(kBatch * kMostDatagram);
@@ -86,7 +119,7 @@ std::uint16_t UdpReceiver::port() const {
 std::size_t UdpReceiver::receive(const Received& received, std::size_t most) {
   std::array<mmsghdr, kBatch> messages{};
   std::array<iovec, kBatch> parts{};
-  alignas(cmsghdr) std::array<char, 64> control{};
+  alignas(cmsghdr) std::array<std::array<char, kControl>, kBatch> control{};
   std::size_t total = 0;
   while (total < most) {
     const std::size_t wanted = std::min(kBatch, most - total);
@@ -95,23 +128,20 @@ std::size_t UdpReceiver::receive(const Received& received, std::size_t most) {
       messages[i].msg_hdr = {};
       messages[i].msg_hdr.msg_iov = &parts[i];
       messages[i].msg_hdr.msg_iovlen = 1;
+      messages[i].msg_hdr.msg_control = control[i].data();
+      messages[i].msg_hdr.msg_controllen = kControl;
     }
-    // The count of drops comes with a datagram; the first of a batch tells.
-    messages[0].msg_hdr.msg_control = control.data();
-    messages[0].msg_hdr.msg_controllen = control.size();
     const int got = ::recvmmsg(socket_.get(), messages.data(), static_cast<unsigned>(wanted),
                                MSG_DONTWAIT, nullptr);
     if (got <= 0) break;
-    for (cmsghdr* c = CMSG_FIRSTHDR(&messages[0].msg_hdr); c;
-         c = CMSG_NXTHDR(&messages[0].msg_hdr, c)) {
-      if (c->cmsg_level != SOL_SOCKET || c->cmsg_type != SO_RXQ_OVFL) continue;
-      std::uint32_t drops = 0;
-      std::memcpy(&drops, CMSG_DATA(c), sizeof drops);
-      overflowed_ = drops;
-    }
-    for (std::size_t i = 0; i < static_cast<std::size_t>(got); ++i)
+    const TimeNs now = wall_ns();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(got); ++i) {
+      TimeNs stamp_ns = now;
+      read_control(messages[i].msg_hdr, overflowed_, stamp_ns);
+      waited_ns_ = now - stamp_ns < kMostWaited_ns ? std::max<TimeNs>(now - stamp_ns, 0) : 0;
       received(Bytes(buffer_).subspan(i * kMostDatagram, messages[i].msg_len),
                (messages[i].msg_hdr.msg_flags & MSG_TRUNC) != 0);
+    }
     total += static_cast<std::size_t>(got);
     if (static_cast<std::size_t>(got) < wanted) break;
   }

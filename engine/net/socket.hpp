@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/core/address.hpp"
+#include "engine/core/clock.hpp"
 #include "engine/net/wire_bytes.hpp"
 
 namespace neritic::net {
@@ -43,6 +44,8 @@ class UdpReceiver {
   std::size_t receive(const Received& received, std::size_t most);
   // Datagrams that the full queue dropped so far.
   std::uint64_t overflowed() const { return overflowed_; }
+  // While `received` has a datagram: how long that one waited in the kernel, by its own stamps.
+  TimeNs waited_ns() const { return waited_ns_; }
   int descriptor() const { return socket_.get(); }
   // Where port 0 was asked for, the port that the system chose.
   std::uint16_t port() const;
@@ -53,6 +56,7 @@ class UdpReceiver {
   Descriptor socket_;
   std::vector<std::byte> buffer_;
   std::uint64_t overflowed_ = 0;
+  TimeNs waited_ns_ = 0;
 };
 
 class UdpSender {

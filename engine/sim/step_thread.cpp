@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "engine/core/thread_urgency.hpp"
+
 namespace neritic::sim {
 
 StepThread::StepThread(StepClock& clock, const StepPacer& pacer, std::function<void(TimeNs)> step)
@@ -14,6 +16,7 @@ void StepThread::stop() {
 }
 
 void StepThread::run() {
+  set_urgency(ThreadUrgency::kSoon);
   while (!stop_) {
     const int steps = pacer_.take(clock_.now());
     for (int i = 0; i < steps; ++i) step_(pacer_.taken_ns(steps, i));

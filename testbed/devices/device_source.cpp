@@ -1,12 +1,9 @@
 #include "testbed/devices/device_source.hpp"
 
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
-
 #include <algorithm>
 
 #include "diver/breath_bands.hpp"
+#include "engine/core/thread_urgency.hpp"
 #include "testbed/devices/jacket_adapter.hpp"
 #include "testbed/devices/microphone_adapter.hpp"
 #include "testbed/devices/strap_adapter.hpp"
@@ -17,8 +14,6 @@ namespace {
 
 // So soon a thread that is asked to stop does.
 constexpr int kLongestWait_ms = 20;
-// The priority of its thread: in a flood of packets it gives way to the simulation.
-constexpr int kNice = 5;
 
 Result<std::unique_ptr<DeviceAdapter>> adapter_of(const scene::DeviceSource& source) {
   using Adapter = std::unique_ptr<DeviceAdapter>;
@@ -73,7 +68,7 @@ DeviceSource::~DeviceSource() {
 }
 
 void DeviceSource::run() {
-  setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
+  set_urgency(ThreadUrgency::kInput);  // in a flood it gives way to the simulation
   while (!stop_) {
     const TimeNs wake_ns = adapter_->wakes_at_ns();
     const TimeNs wait_ns =
@@ -82,7 +77,7 @@ void DeviceSource::run() {
         static_cast<int>(std::clamp<TimeNs>(wait_ns / kMillisecond_ns, 0, TimeNs{kLongestWait_ms}));
     feed_->receive(
         [this](net::Bytes bytes, bool cut) {
-          heard_ns_ = now_ns();
+          heard_ns_ = now_ns() - feed_->waited_ns();
           adapter_->take(bytes, cut, heard_ns_, outlet_);
         },
         wait_ms);
@@ -102,6 +97,7 @@ Status DeviceSource::poll(SampleInbox&, double scene_time_s) {
 }
 
 void DeviceSource::receive_at(TimeNs at_ns, int wait_ms) {
+  feed_->at_simulated(at_ns);
   feed_->receive(
       [&](net::Bytes bytes, bool cut) {
         heard_ns_ = at_ns;

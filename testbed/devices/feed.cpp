@@ -29,6 +29,7 @@ class UdpFeed final : public Feed {
     (void)receiver_.receive(received, kPortion);
   }
   std::uint64_t overflowed() const override { return receiver_.overflowed(); }
+  TimeNs waited_ns() const override { return receiver_.waited_ns(); }
 
  private:
   net::UdpReceiver receiver_;

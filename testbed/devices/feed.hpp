@@ -17,8 +17,12 @@ class Feed {
   virtual ~Feed() = default;
   // Waits for bytes, at most so long, and gives those that came, in bounded portions.
   virtual void receive(const net::Received& received, int wait_ms) = 0;
+  // Before a receive() in simulated time: what plays by itself goes by that.
+  virtual void at_simulated(TimeNs) {}
   // Datagrams that a full queue dropped so far.
   virtual std::uint64_t overflowed() const { return 0; }
+  // While `received` has bytes: for how long they lay here before, as far as known.
+  virtual TimeNs waited_ns() const { return 0; }
   // Whether the other end is there, in words; empty: nothing to say.
   virtual std::string trouble() const { return {}; }
   // For feeds whose protocol asks for the device's time.

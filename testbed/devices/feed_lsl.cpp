@@ -2,7 +2,9 @@
 // they come from, stamped by the sender's clock; LSL's own exchanges tell how far that clock is
 // off.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "engine/core/refusal.hpp"
 #include "engine/net/heart_strap.hpp"
@@ -15,6 +17,11 @@
 namespace neritic::testbed {
 namespace {
 
+constexpr double kLook_s = 0.2;
+constexpr TimeNs kLookEvery_ns = 2 * kSecond_ns;
+constexpr int kLostStream = -2;  // the library's error
+// Of a Polar strap; samples of other rates would give other intervals between beats.
+constexpr double kEcgRate_hz = 130.0, kMostOff = 0.01;
 constexpr double kResolve_s = 3.0, kOpen_s = 3.0, kExchange_s = 0.2;
 constexpr TimeNs kAskEvery_ns = 5 * kSecond_ns;
 constexpr std::size_t kMostPulled = 4096;
@@ -32,6 +39,7 @@ struct Lsl {
                        int* error) = nullptr;
   double (*clock)() = nullptr;
   int (*channels)(void* info) = nullptr;
+  double (*rate)(void* info) = nullptr;
   void (*destroy_inlet)(void* inlet) = nullptr;
   void (*destroy_info)(void* info) = nullptr;
 };
@@ -47,19 +55,24 @@ class LslFeed final : public Feed {
                                                            "Lab Streaming Layer's liblsl"));
     auto feed = std::unique_ptr<LslFeed>(new LslFeed(std::move(library), source));
     NERITIC_TRY_STATUS(feed->find_functions());
-    NERITIC_TRY_STATUS(feed->find_stream());
+    NERITIC_TRY_STATUS(feed->find_stream(kResolve_s));
     return std::unique_ptr<Feed>(std::move(feed));
   }
-  ~LslFeed() override {
-    if (inlet_) lsl_.destroy_inlet(inlet_);
-    if (info_) lsl_.destroy_info(info_);
-  }
+  ~LslFeed() override { close(); }
 
   void receive(const net::Received& received, int wait_ms) override {
+    if (!inlet_ && !find_again(wait_ms)) return;
+    // The library waits until all of a buffer is there: first for one sample, then for none.
     int error = 0;
-    const unsigned long values = lsl_.pull(inlet_, data_.data(), stamps_.data(), data_.size(),
-                                           data_.size() / channels_, 1e-3 * wait_ms, &error);
-    trouble_ = error == 0 ? "" : fmt::format("LSL's error {}", error);
+    unsigned long values =
+        lsl_.pull(inlet_, data_.data(), stamps_.data(), channels_, 1, 1e-3 * wait_ms, &error);
+    if (error == 0 && values == channels_)
+      values += lsl_.pull(inlet_, data_.data() + channels_, stamps_.data() + 1,
+                          data_.size() - channels_, stamps_.size() - 1, 0.0, &error);
+    trouble_ = error == 0             ? ""
+               : error == kLostStream ? "its stream is lost and looked for"
+                                      : fmt::format("LSL's error {}", error);
+    if (error == kLostStream) close();
     const std::size_t samples = values / channels_;
     if (samples == 0) return;
     if (source_.device == "jacket")
@@ -73,7 +86,7 @@ class LslFeed final : public Feed {
 
   // The offset that LSL found by its exchanges (the best of eight), with its own uncertainty.
   void exchange_times(DeviceAdapter& adapter) override {
-    if (now_ns() - asked_ns_ < kAskEvery_ns) return;
+    if (!inlet_ || now_ns() - asked_ns_ < kAskEvery_ns) return;
     asked_ns_ = now_ns();
     int error = 0;
     double remote_s = 0.0, uncertainty_s = 0.0;
@@ -98,21 +111,43 @@ class LslFeed final : public Feed {
     library_.find("lsl_time_correction_ex", lsl_.correction);
     library_.find("lsl_local_clock", lsl_.clock);
     library_.find("lsl_get_channel_count", lsl_.channels);
+    library_.find("lsl_get_nominal_srate", lsl_.rate);
     library_.find("lsl_destroy_inlet", lsl_.destroy_inlet);
     library_.find("lsl_destroy_streaminfo", lsl_.destroy_info);
     return library_.complete();
   }
 
-  Status find_stream() {
-    if (lsl_.resolve(&info_, 1, "name", source_.port.c_str(), 1, kResolve_s) < 1) {
+  void close() {
+    if (inlet_) lsl_.destroy_inlet(inlet_);
+    if (info_) lsl_.destroy_info(info_);
+    inlet_ = info_ = nullptr;
+  }
+
+  // For a stream that was lost for good: its sender may come back as another one of that name.
+  bool find_again(int wait_ms) {
+    if (now_ns() - looked_ns_ >= kLookEvery_ns && find_stream(kLook_s).ok()) {
+      trouble_.clear();
+      return true;
+    }
+    if (now_ns() - looked_ns_ >= kLookEvery_ns) {
+      looked_ns_ = now_ns();
+      close();
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
+    return false;
+  }
+
+  Status find_stream(double within_s) {
+    if (lsl_.resolve(&info_, 1, "name", source_.port.c_str(), 1, within_s) < 1) {
       info_ = nullptr;
-      return failure(ErrorCode::kIo, "LSL: no stream {} within {:g} s", source_.port, kResolve_s);
+      return failure(ErrorCode::kIo, "LSL: no stream {} within {:g} s", source_.port, within_s);
     }
     const std::size_t wanted = source_.device == "jacket" ? 3 : 1;
     const int channels = lsl_.channels(info_);
     if (channels != static_cast<int>(wanted))
       return refusal(fmt::format("LSL: {}", source_.port), fmt::format("{} channels", channels),
                      fmt::format("{} of a {}", wanted, source_.device));
+    NERITIC_TRY_STATUS(check_rate(lsl_.rate(info_)));
     channels_ = wanted;
     data_.resize(kMostPulled * channels_);
     stamps_.resize(kMostPulled);
@@ -122,6 +157,16 @@ class LslFeed final : public Feed {
     if (!inlet_ || error != 0)
       return failure(ErrorCode::kIo, "LSL: the stream {} does not open", source_.port);
     return {};
+  }
+
+  // 0: it says none.
+  Status check_rate(double rate_hz) const {
+    const double wanted_hz = source_.device == "strap"        ? kEcgRate_hz
+                             : source_.device == "microphone" ? source_.rate_hz
+                                                              : rate_hz;
+    if (rate_hz == 0.0 || std::abs(rate_hz - wanted_hz) <= kMostOff * wanted_hz) return {};
+    return refusal(fmt::format("LSL: {}", source_.port),
+                   fmt::format("{:g} samples a second", rate_hz), fmt::format("{:g}", wanted_hz));
   }
 
   void give_buttons(std::size_t i, const net::Received& received) {
@@ -172,7 +217,7 @@ class LslFeed final : public Feed {
   std::size_t channels_ = 1;
   std::vector<float> data_;
   std::vector<double> stamps_;
-  TimeNs asked_ns_ = 0, last_ns_ = 0;
+  TimeNs asked_ns_ = 0, last_ns_ = 0, looked_ns_ = 0;
   std::array<bool, 3> was_{};
   std::array<TimeNs, 3> pressed_ns_{};
   std::uint8_t presses_ = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <thread>
 
 #include "diver/physio_wav.hpp"
@@ -15,18 +16,21 @@ namespace neritic::testbed {
 namespace {
 
 constexpr double kPacket_s = 0.02;
+constexpr int kMostAtOnce = 4096;  // in simulated time, whose steps may be long
 
 class WavFeed final : public Feed {
  public:
   explicit WavFeed(diver::Recording sound) : sound_(std::move(sound)) {}
+  void at_simulated(TimeNs at_ns) override { simulated_ns_ = at_ns; }
   void receive(const net::Received& received, int wait_ms) override {
-    if (begun_ns_ == 0) begun_ns_ = now_ns();
+    if (!begun_ns_) begun_ns_ = time_ns();
     const auto samples = static_cast<std::size_t>(std::lround(kPacket_s * sound_.rate_hz));
-    for (int i = 0; i < 2; ++i) {
+    for (int i = 0; i < (simulated_ns_ ? kMostAtOnce : 2); ++i) {
       const TimeNs due_ns =
-          begun_ns_ +
+          *begun_ns_ +
           static_cast<TimeNs>(1e9 * static_cast<double>(packet_.timestamp_so_far) / sound_.rate_hz);
-      const TimeNs left_ns = due_ns - now_ns();
+      const TimeNs left_ns = due_ns - time_ns();
+      if (left_ns > 0 && simulated_ns_) return;
       if (left_ns > 0) {
         std::this_thread::sleep_for(
             std::chrono::nanoseconds(std::min(left_ns, static_cast<TimeNs>(wait_ms) * 1'000'000)));
@@ -48,8 +52,9 @@ class WavFeed final : public Feed {
     net::RtpPacket packet;
     std::uint64_t timestamp_so_far = 0;
   };
+  TimeNs time_ns() const { return simulated_ns_.value_or(now_ns()); }
   diver::Recording sound_;
-  TimeNs begun_ns_ = 0;
+  std::optional<TimeNs> begun_ns_, simulated_ns_;
   std::size_t at_ = 0;
   Next packet_;
 };

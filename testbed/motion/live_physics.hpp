@@ -57,6 +57,11 @@ class LivePhysics {
   // state's numbers. Lock-step: the loop's clock has to begin anew there.
   Status go_to(const SavedState& saved);
   std::uint64_t restored() const { return restored_; }  // how often it went so
+  // Beside a thread: follow() waits for a step that is due within this share of a step, so that a
+  // picture shows what came until then. A share w costs a picture w * w / 2 of a step on average,
+  // and makes the state that it shows younger by w - w * w / 2. 0, the default: never.
+  void await_steps(double share) { wait_share_ = share; }
+  static constexpr double kPictureWait = 0.5;  // of a window
   // After the last step; newest() and simulation() may be asked then, at any pace.
   void stop() { simulation_->stop(); }
 
@@ -91,12 +96,14 @@ class LivePhysics {
  private:
   LivePhysics(std::unique_ptr<const PhysicsWorld> world, const Options& options);
   double follow_thread(TimeNs display_ns);
+  void await_step();
   bool poll(double time_s);
 
   std::unique_ptr<const PhysicsWorld> world_;
   Pace pace_;
   sim::HostClock host_;
   sim::StepClock* clock_;  // that paces the thread
+  double wait_share_ = 0.0;
   std::unique_ptr<PhysicsSimulation> simulation_;
   std::optional<sim::SnapshotReader<PhysicsState>> reader_;  // of the thread's states
   MotionHistory history_;

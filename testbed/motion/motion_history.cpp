@@ -73,9 +73,11 @@ std::optional<scene::ModelPose> MotionHistory::model_pose(std::size_t object,
   if (place < 0 || count_ == 0) return std::nullopt;
   const auto index = static_cast<std::size_t>(place);
   const std::size_t age = age_before(time_s);
+  if (at_age(age).joints[index].rotations.empty()) return std::nullopt;
   scene::NodeMotion motion{moved_[static_cast<std::size_t>(place_[object])].nodes,
                            {at_age(age).joints[index]}};
-  if (age > 0) motion.keys.push_back(at_age(age - 1).joints[index]);
+  if (age > 0 && !at_age(age - 1).joints[index].rotations.empty())
+    motion.keys.push_back(at_age(age - 1).joints[index]);
   return scene::evaluate_pose(model, motion, time_s);
 }
 
@@ -83,7 +85,8 @@ std::vector<MotionHistory::Moved> moved_objects(const PhysicsWorld& world) {
   std::vector<MotionHistory::Moved> moved;
   for (const PhysicsVehicle& vehicle : world.vehicles()) moved.push_back({vehicle.object, {}});
   for (const PhysicsHuman& human : world.humans()) moved.push_back({human.object, human.nodes});
-  for (const PhysicsObject& object : world.objects()) moved.push_back({object.object, {}});
+  for (const PhysicsObject& object : world.objects())
+    moved.push_back({object.object, object.joints.nodes});
   return moved;
 }
 
@@ -99,6 +102,10 @@ MotionSnapshot motion_of(const PhysicsWorld& world, const sim::Snapshot<PhysicsS
   }
   for (const ObjectState& object : snapshot.state.objects())
     out.motions.push_back(motion_of(object));
+  for (const PhysicsObject& object : world.objects())
+    if (object.limbs)
+      out.joints.push_back(
+          drawn_joints(object.joints, snapshot.state.limbs()[*object.limbs], snapshot.time_s));
   return out;
 }
 

@@ -16,7 +16,8 @@ struct MotionSnapshot {
   double time_s = 0.0;
   // World_from_object; nothing: the object's own track or place has it.
   std::vector<std::optional<Motion>> motions;
-  std::vector<scene::NodeMotion::Key> joints;  // of the objects with nodes, in their order
+  // For the objects with nodes, in their order; without rotations: its clip moves it.
+  std::vector<scene::NodeMotion::Key> joints;
 };
 
 class MotionHistory final : public scene::SimulatedMotion {

@@ -83,11 +83,22 @@ bool apply(VehicleInputs& inputs, const Sample& sample, std::uint64_t step) {
   return true;
 }
 
-bool apply(ObjectInputs& inputs, const Sample& sample, std::uint64_t step) {
-  if (const Event* event = std::get_if<Event>(&sample.payload))
-    return apply_event(inputs, *event, 0);
-  if (!heard(inputs, sample, step)) return false;
+bool apply(ObjectInputs& inputs, const Sample& sample, std::uint64_t step, LimbTrack* limbs) {
   const GroupControl& control = inputs.control.front();
+  if (const Event* event = std::get_if<Event>(&sample.payload)) {
+    const std::uint64_t before = control.source;
+    const bool known = apply_event(inputs, *event, 0);
+    if (limbs && control.source != before) *limbs = {};
+    return known;
+  }
+  if (const BodyJoints* body = std::get_if<BodyJoints>(&sample.payload)) {
+    // Only poses count as heard: a diver whose place is not known is not shown by limbs.
+    if (!limbs || control.authority != Authority::kLive || control.source != sample.header.source)
+      return false;
+    limbs->take(*body, sample.header, control.hold_s, step);
+    return true;
+  }
+  if (!heard(inputs, sample, step)) return false;
   if (control.heard == 1) inputs.track = {};  // another source's poses say nothing of this one's
   inputs.track.take(std::get<ObjectPose>(sample.payload), sample.header, control.hold_s);
   return true;

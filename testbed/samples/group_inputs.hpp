@@ -3,6 +3,7 @@
 #pragma once
 
 #include "testbed/samples/authority.hpp"
+#include "testbed/samples/limb_track.hpp"
 #include "testbed/samples/pose_track.hpp"
 
 namespace neritic::testbed {
@@ -95,6 +96,8 @@ ObjectInputs autopilot_object();
 bool apply(DiverInputs& inputs, const Sample& sample, std::uint64_t step,
            std::uint64_t recorded = 0);
 bool apply(VehicleInputs& inputs, const Sample& sample, std::uint64_t step);
-bool apply(ObjectInputs& inputs, const Sample& sample, std::uint64_t step);
+// limbs: of the object, if it has them: its joints come under the authority of its poses.
+bool apply(ObjectInputs& inputs, const Sample& sample, std::uint64_t step,
+           LimbTrack* limbs = nullptr);
 
 }  // namespace neritic::testbed

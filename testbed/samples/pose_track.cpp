@@ -13,8 +13,9 @@ double seconds_between(TimeNs from_ns, TimeNs to_ns) {
   return 1e-9 * (static_cast<double>(to_ns) - static_cast<double>(from_ns));
 }
 
-// The rate of the shortest turn from one attitude to another, world axes.
-Vec3 rate_rad_s(const Quat& from, const Quat& to, double interval_s) {
+}  // namespace
+
+Vec3 turning_rad_s(const Quat& from, const Quat& to, double interval_s) {
   Quat turn = to * glm::conjugate(from);
   if (turn.w < 0.0) turn = -turn;
   const Vec3 axis(turn.x, turn.y, turn.z);
@@ -22,8 +23,6 @@ Vec3 rate_rad_s(const Quat& from, const Quat& to, double interval_s) {
   if (!(sine > 0.0)) return Vec3(0.0);
   return axis * (2.0 * std::atan2(sine, turn.w) / (sine * interval_s));
 }
-
-}  // namespace
 
 void PoseTrack::take(const ObjectPose& pose, const SampleHeader& header, double hold_s) {
   const Pose at{pose.world_from_object.position_m, glm::normalize(pose.world_from_object.rotation)};
@@ -39,7 +38,7 @@ void PoseTrack::take(const ObjectPose& pose, const SampleHeader& header, double 
     newest.angular_velocity_rad_s = pose.angular_velocity_rad_s;
   } else if (follows) {
     const Vec3 velocity_m_s = (at.position_m - base.position_m) / since_s;
-    const Vec3 turn_rad_s = rate_rad_s(base.rotation, at.rotation, since_s);
+    const Vec3 turn_rad_s = turning_rad_s(base.rotation, at.rotation, since_s);
     if (glm::length(velocity_m_s) <= kMostSpeed_m_s && glm::length(turn_rad_s) <= kMostRate_rad_s) {
       newest.velocity_m_s = velocity_m_s;
       newest.angular_velocity_rad_s = turn_rad_s;

@@ -7,6 +7,10 @@
 
 namespace neritic::testbed {
 
+// The rate of the shortest turn from one attitude to another, in their target's axes. Precondition:
+// interval_s > 0.
+Vec3 turning_rad_s(const Quat& from, const Quat& to, double interval_s);
+
 struct PoseTrack {
   // Poses captured closer together than this say where the object is, not how fast it moves.
   static constexpr double kLeastInterval_s = 1e-3;

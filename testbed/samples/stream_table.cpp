@@ -41,10 +41,11 @@ void StreamTable::add_vehicle(const std::string& name, const rov::SensorSet& sen
   add(OwnerSort::kVehicle, static_cast<std::uint32_t>(first_[1].size()), name, kinds, modem);
 }
 
-void StreamTable::add_object(const std::string& name, ModemSort modem) {
+void StreamTable::add_object(const std::string& name, ModemSort modem, bool limbs) {
   using enum PayloadKind;
-  add(OwnerSort::kObject, static_cast<std::uint32_t>(first_[2].size()), name, {kObjectPose, kEvent},
-      modem);
+  std::vector<PayloadKind> kinds{kObjectPose, kEvent};
+  if (limbs) kinds.push_back(kBodyJoints);
+  add(OwnerSort::kObject, static_cast<std::uint32_t>(first_[2].size()), name, kinds, modem);
 }
 
 std::optional<StreamId> StreamTable::find(const std::string& name) const {

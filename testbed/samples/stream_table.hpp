@@ -32,8 +32,8 @@ class StreamTable {
   // Streams of its next vehicle: inputs, the sensors that it has, collisions, events.
   void add_vehicle(const std::string& name, const rov::SensorSet& sensors,
                    ModemSort modem = ModemSort::kNone);
-  // Streams of its next object that devices move: pose, events.
-  void add_object(const std::string& name, ModemSort modem = ModemSort::kNone);
+  // Streams of its next object that devices move: pose, events; limbs: joints.
+  void add_object(const std::string& name, ModemSort modem = ModemSort::kNone, bool limbs = false);
 
   std::span<const Stream> streams() const { return streams_; }
   std::size_t size() const { return streams_.size(); }

@@ -35,6 +35,8 @@ struct Answer {
   std::uint64_t step = 0, hash = 0;
   double time_s = 0.0;
   std::vector<double> values;                // of kTruth, kPoses
+  std::vector<double> joints;                // likewise, of those that have limbs
+  std::vector<std::uint32_t> with_joints;    // their agents
   std::vector<std::byte> bytes;              // of kSave
   std::string text;                          // of kRecord: the file
   std::unique_ptr<Instruments> instruments;  // of kInstruments

@@ -1,15 +1,12 @@
 #include "testbed/server/server.hpp"
 
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
-
 #include <atomic>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "engine/core/refusal.hpp"
+#include "engine/core/thread_urgency.hpp"
 #include "engine/net/message_pack.hpp"
 #include "testbed/server/client_mail.hpp"
 
@@ -19,7 +16,6 @@ namespace {
 using nlohmann::json;
 
 constexpr int kWait_ms = 50;                // that the thread waits for messages at most
-constexpr int kNice = 5;                    // gives way to the simulation
 constexpr const char* kUnnamed = "client";  // as in process
 
 json described(const ServedFacts& facts) {
@@ -119,7 +115,7 @@ class Server::Network {
 };
 
 void Server::Network::run() {
-  setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
+  set_urgency(ThreadUrgency::kInput);
   const net::ServerSocket::Events events{[this](const auto& message) { hear(message); },
                                          [this](ClientId client) { gone(client); }};
   while (!stop_) {
@@ -278,11 +274,21 @@ void Server::Network::answer(const Answer& answer) {
       break;
     case Op::kTruth:
       map["values"] = answer.values;
+      if (!answer.joints.empty()) map["joints"] = answer.joints;
       break;
     case Op::kPoses: {
-      const auto* bytes = reinterpret_cast<const std::byte*>(answer.values.data());
-      message.frames.emplace_back(bytes, bytes + answer.values.size() * sizeof(double));
+      const auto put = [&](const std::vector<double>& values) {
+        const auto* bytes = reinterpret_cast<const std::byte*>(values.data());
+        message.frames.emplace_back(bytes, bytes + values.size() * sizeof(double));
+      };
+      put(answer.values);
       map["poses"] = {{"rows", facts_.agents.size()}, {"columns", 13}, {"frame", 1}};
+      if (answer.joints.empty()) break;
+      put(answer.joints);
+      map["joints"] = {{"rows", answer.with_joints.size()},
+                       {"columns", answer.joints.size() / answer.with_joints.size()},
+                       {"frame", 2},
+                       {"agents", answer.with_joints}};
       break;
     }
     case Op::kInstruments: {

@@ -79,9 +79,11 @@ Status WorldServer::step() {
   const std::uint64_t steps =
       options_.real_time ? 1 : std::min(kStepsAtOnce, turn_->until - world_.step());
   const Status status = world_.tick(steps);
-  publish();
+  const bool ends = !options_.real_time && (!status.ok() || world_.step() >= turn_->until);
+  // Where the tick's answer follows, that wakes the network's thread, once for both.
+  publish(ends && turn_->client != 0 ? Wake::kLater : Wake::kNow);
   if (options_.real_time) return status;
-  if (status.ok() && world_.step() < turn_->until) return {};
+  if (!ends) return {};
   const Turn turn = *std::exchange(turn_, std::nullopt);
   if (turn.client == 0) return {};  // it left
   Answer answer{.client = turn.client, .id = turn.id, .op = Op::kTick, .ok = status.ok()};
@@ -230,7 +232,8 @@ Status WorldServer::record(const Ask& ask, Answer& answer) {
   return world_.record(file);
 }
 
-void WorldServer::truth_of(std::size_t agent, std::vector<double>& values) {
+void WorldServer::truth_of(std::uint32_t agent, Answer& answer) {
+  std::vector<double>& values = answer.values;
   const auto truth = world_.truth(world_.agents()[agent].name);
   if (!truth.ok()) {
     values.insert(values.end(), 13, 0.0);
@@ -241,6 +244,9 @@ void WorldServer::truth_of(std::size_t agent, std::vector<double>& values) {
   };
   add(truth->position), add(truth->orientation);
   add(truth->linear_velocity), add(truth->angular_velocity);
+  if (truth->joints.empty()) return;
+  answer.joints.insert(answer.joints.end(), truth->joints.begin(), truth->joints.end());
+  answer.with_joints.push_back(agent);
 }
 
 Status WorldServer::act(const Ask& ask, Answer& answer) {
@@ -271,7 +277,7 @@ Status WorldServer::act(const Ask& ask, Answer& answer) {
       return inject(ask);
     case Op::kTruth: {
       NERITIC_TRY(const std::size_t agent, world_.agent(request.agent));
-      truth_of(agent, answer.values);
+      truth_of(static_cast<std::uint32_t>(agent), answer);
       NERITIC_TRY(const Truth truth, world_.truth(request.agent));
       answer.values.insert(answer.values.end(), truth.current.begin(), truth.current.end());
       answer.values.push_back(static_cast<double>(truth.touched_steps));
@@ -279,7 +285,7 @@ Status WorldServer::act(const Ask& ask, Answer& answer) {
       return {};
     }
     case Op::kPoses:
-      for (std::size_t i = 0; i < world_.agents().size(); ++i) truth_of(i, answer.values);
+      for (std::uint32_t i = 0; i < world_.agents().size(); ++i) truth_of(i, answer);
       return {};
     case Op::kInstruments: {
       NERITIC_TRY(Instruments instruments, world_.instruments(request.agent));
@@ -319,7 +325,7 @@ void WorldServer::finish_waiting(const Status& status) {
 }
 
 // Sends what changed since the last time; if the queue is full, with the next.
-void WorldServer::publish() {
+void WorldServer::publish(Wake wake) {
   if (!news_) news_ = std::make_unique<News>();
   News& news = *news_;
   news.step = world_.step();
@@ -342,7 +348,7 @@ void WorldServer::publish() {
     return;
   }
   std::copy(newest.begin(), newest.end(), published_.begin());
-  hand_off_.wake_network();
+  if (wake == Wake::kNow) hand_off_.wake_network();
 }
 
 }  // namespace neritic::testbed

@@ -60,10 +60,11 @@ class WorldServer {
   Status wish_images(std::uint32_t stream);
   Status inject(const Ask& ask);
   Status record(const Ask& ask, Answer& answer);
-  void truth_of(std::size_t agent, std::vector<double>& values);
+  void truth_of(std::uint32_t agent, Answer& answer);
   Status check_holder(const Ask& ask) const;
   void finish_waiting(const Status& status);
-  void publish();
+  enum class Wake { kNow, kLater };  // the network's thread
+  void publish(Wake wake = Wake::kNow);
   void tell(Answer answer);
 
   World& world_;

@@ -171,4 +171,14 @@ scene::NodeMotion::Key drawn_joints(const PhysicsHuman& human, const HumanPhysic
   return key;
 }
 
+scene::NodeMotion::Key drawn_joints(const DrawnJoints& drawn, const LimbState& state,
+                                    double time_s) {
+  scene::NodeMotion::Key key{time_s, {}, {}};
+  if (state.shown == 0) return key;
+  key.rotations.push_back(Quat(1.0, 0.0, 0.0, 0.0));
+  for (const Quat& joint : diver::standing_joints(state.joints, drawn.arms_spread_rad))
+    key.rotations.push_back(joint);
+  return key;
+}
+
 }  // namespace neritic::testbed

@@ -58,24 +58,36 @@ void find_gear(const scene::Model& model, PhysicsHuman& human) {
   for (const char* name : {"blade_l", "blade_r"}) worn(name, blade);
 }
 
-// The model's joints, and how far its arms are spread: the way from shoulder to elbow.
 Status find_nodes(const scene::Scene& scene, const scene::Object& object, PhysicsHuman& human) {
   const scene::Model& model = *scene.models[static_cast<std::size_t>(object.model)];
-  for (const std::string_view name : diver::kSegmentNames) {
-    human.nodes.push_back(node_named(model, name));
-    if (human.nodes.back() < 0)
-      return bad_input("{}: {}: human: a model without the node '{}' found; accepted: nodes of {}",
-                       scene.path, object.name, name, "the 16 segments' names");
-  }
-  const auto elbow = static_cast<std::size_t>(human.nodes[diver::kRightForearm]);
-  const Vec3& arm = model.nodes[elbow].translation_m;
-  human.arms_spread_rad = std::atan2(arm.x, -arm.y);
+  std::string_view missing;
+  DrawnJoints joints = drawn_joints_of(model, missing);
+  if (!missing.empty())
+    return bad_input("{}: {}: human: a model without the node '{}' found; accepted: nodes of {}",
+                     scene.path, object.name, missing, "the 16 segments' names");
+  human.nodes = std::move(joints.nodes);
+  human.arms_spread_rad = joints.arms_spread_rad;
   human.scale = drawn_scale(model, human);
   find_gear(model, human);
   return {};
 }
 
 }  // namespace
+
+DrawnJoints drawn_joints_of(const scene::Model& model, std::string_view& missing) {
+  DrawnJoints out;
+  for (const std::string_view name : diver::kSegmentNames) {
+    out.nodes.push_back(node_named(model, name));
+    if (out.nodes.back() >= 0) continue;
+    missing = name;
+    return {};
+  }
+  // The way from shoulder to elbow.
+  const auto elbow = static_cast<std::size_t>(out.nodes[diver::kRightForearm]);
+  const Vec3& arm = model.nodes[elbow].translation_m;
+  out.arms_spread_rad = std::atan2(arm.x, -arm.y);
+  return out;
+}
 
 Result<PhysicsHuman> physics_human(const scene::Scene& scene, std::size_t index) {
   const scene::Object& object = scene.objects[index];

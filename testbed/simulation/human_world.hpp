@@ -20,6 +20,14 @@
 
 namespace neritic::testbed {
 
+// The joints of a drawn diver: nodes of the model, one a segment, and how far its arms are spread.
+struct DrawnJoints {
+  std::vector<int> nodes;
+  double arms_spread_rad = 0.0;
+};
+// The first segment whose node the model lacks is `missing`; empty: it is a diver's model.
+DrawnJoints drawn_joints_of(const scene::Model& model, std::string_view& missing);
+
 // A diver of the scene, prepared.
 struct PhysicsHuman {
   std::string name;
@@ -84,6 +92,9 @@ void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const H
 // The drawn diver: the pose of the model, and its nodes' rotations and scales (breath).
 Pose drawn_pose(const HumanPhysics& state);
 scene::NodeMotion::Key drawn_joints(const PhysicsHuman& human, const HumanPhysics& state,
+                                    double time_s);
+// The same of one who swims elsewhere; without rotations while the model's clip moves it.
+scene::NodeMotion::Key drawn_joints(const DrawnJoints& drawn, const LimbState& state,
                                     double time_s);
 
 }  // namespace neritic::testbed

@@ -24,12 +24,13 @@ struct ModemInputs {
 };
 
 // The inputs of every vehicle, diver and object that devices move, and of every modem.
-class PhysicsInputs : public sim::Block<VehicleInputs, DiverInputs, ObjectInputs, ModemInputs> {
+class PhysicsInputs
+    : public sim::Block<VehicleInputs, DiverInputs, ObjectInputs, ModemInputs, LimbTrack> {
  public:
   PhysicsInputs() = default;
   PhysicsInputs(std::size_t vehicles, std::size_t humans, std::size_t objects = 0,
-                std::size_t modems = 0)
-      : Block({vehicles, humans, objects, modems}) {}
+                std::size_t modems = 0, std::size_t limbs = 0)
+      : Block({vehicles, humans, objects, modems, limbs}) {}
 
   std::span<VehicleInputs> vehicles() { return part<VehicleInputs>(); }
   std::span<const VehicleInputs> vehicles() const { return part<VehicleInputs>(); }
@@ -39,16 +40,21 @@ class PhysicsInputs : public sim::Block<VehicleInputs, DiverInputs, ObjectInputs
   std::span<const ObjectInputs> objects() const { return part<ObjectInputs>(); }
   std::span<ModemInputs> modems() { return part<ModemInputs>(); }
   std::span<const ModemInputs> modems() const { return part<ModemInputs>(); }
+  // For the objects that have limbs, in their order.
+  std::span<LimbTrack> limbs() { return part<LimbTrack>(); }
+  std::span<const LimbTrack> limbs() const { return part<LimbTrack>(); }
 
   static void fields(auto&& field, auto& self) {
     auto vehicles = self.vehicles();
     auto humans = self.humans();
     auto objects = self.objects();
     auto modems = self.modems();
+    auto limbs = self.limbs();
     field("vehicles", vehicles);
     field("humans", humans);
     field("objects", objects);
     field("modems", modems);
+    field("limbs", limbs);
   }
 };
 

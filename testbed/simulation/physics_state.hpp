@@ -129,6 +129,17 @@ struct ObjectState {
   }
 };
 
+// The limbs of a diver who swims elsewhere, as samples of the joints move them.
+struct LimbState {
+  diver::JointRotations joints = diver::straight_joints();
+  std::uint64_t shown = 0;  // 0: the model's clip moves them
+
+  static void fields(auto&& field, auto& self) {
+    field("joints", self.joints);
+    field("shown", self.shown);
+  }
+};
+
 // The tasks of a modem beside its messages: answers that it owes, and its own ranging.
 struct ModemTasks {
   std::uint64_t sent = 0;                                       // of ModemInputs::asked
@@ -159,14 +170,15 @@ struct ModemTasks {
 // The state of a scene's physics: one block, sized once from the scene (PhysicsWorld::start()).
 class PhysicsState
     : public sim::Block<VehicleState, HumanPhysics, rov::SensorReadings, rov::NavigationState,
-                        ObjectState, sonar::ModemState, ModemTasks> {
+                        ObjectState, sonar::ModemState, ModemTasks, LimbState> {
  public:
   PhysicsState() = default;
   // sensing: vehicles that have sensors; navigating: those that fly on what they measure; objects:
-  // those that devices move.
+  // those that devices move; limbs: those of them with limbs.
   PhysicsState(std::size_t vehicles, std::size_t humans, std::size_t sensing,
-               std::size_t navigating, std::size_t objects = 0, std::size_t modems = 0)
-      : Block({vehicles, humans, sensing, navigating, objects, modems, modems}) {}
+               std::size_t navigating, std::size_t objects = 0, std::size_t modems = 0,
+               std::size_t limbs = 0)
+      : Block({vehicles, humans, sensing, navigating, objects, modems, modems, limbs}) {}
 
   std::span<VehicleState> vehicles() { return part<VehicleState>(); }
   std::span<const VehicleState> vehicles() const { return part<VehicleState>(); }
@@ -184,6 +196,9 @@ class PhysicsState
   std::span<const sonar::ModemState> modems() const { return part<sonar::ModemState>(); }
   std::span<ModemTasks> modem_tasks() { return part<ModemTasks>(); }
   std::span<const ModemTasks> modem_tasks() const { return part<ModemTasks>(); }
+  // For the objects that have limbs, in their order.
+  std::span<LimbState> limbs() { return part<LimbState>(); }
+  std::span<const LimbState> limbs() const { return part<LimbState>(); }
 
   static void fields(auto&& field, auto& self) {
     auto vehicles = self.vehicles();
@@ -193,6 +208,7 @@ class PhysicsState
     auto objects = self.objects();
     auto modems = self.modems();
     auto modem_tasks = self.modem_tasks();
+    auto limbs = self.limbs();
     field("vehicles", vehicles);
     field("humans", humans);
     field("readings", readings);
@@ -200,11 +216,13 @@ class PhysicsState
     field("objects", objects);
     field("modems", modems);
     field("modem_tasks", modem_tasks);
+    field("limbs", limbs);
   }
-  // The hash covers groups once a live source was asked for, and navigation, objects and modems
-  // where there are any.
+  // The hash covers groups once a live source was asked for, and navigation, objects, modems and
+  // limbs where there are any.
   std::span<const std::uint64_t> hashed_counts() const {
-    const std::size_t kinds = !modems().empty()       ? kKinds
+    const std::size_t kinds = !limbs().empty()        ? kKinds
+                              : !modems().empty()     ? 7
                               : !objects().empty()    ? 5
                               : !navigation().empty() ? 4
                                                       : 3;
@@ -226,6 +244,8 @@ class PhysicsState
     auto navigation = self.navigation();
     field("readings", readings);
     if (!navigation.empty()) field("navigation", navigation);
+    auto limbs = self.limbs();
+    if (!limbs.empty()) field("limbs", limbs);
     if (self.modems().empty()) return;
     auto modems = self.modems();
     auto modem_tasks = self.modem_tasks();

@@ -71,6 +71,21 @@ ObjectState next_object(const ObjectState& before, const ObjectInputs& inputs,
   return next;
 }
 
+// After the step: the limbs of an object whose poses and joints come from elsewhere.
+LimbState next_limbs(const LimbState& before, const LimbTrack& track, const ObjectState& object,
+                     double hold_s, const sim::StepTime& time) {
+  LimbState next = before;
+  const Authority by = acting(object.groups.front());
+  const double since_s = static_cast<double>(time.step + 1 - track.taken_step) * time.step_s;
+  if (by == Authority::kLive && track.taken > 0 && since_s <= hold_s) {
+    next.joints = track.at(since_s);
+    next.shown = 1;
+  } else if (by != Authority::kNobody) {
+    next = {};
+  }
+  return next;
+}
+
 // Points of one body, thinned or not: more are seldom near at once.
 constexpr std::size_t kRoomForContacts = 256;
 
@@ -78,7 +93,7 @@ constexpr std::size_t kRoomForContacts = 256;
 
 PhysicsState PhysicsWorld::start() const {
   PhysicsState state(vehicles_.size(), humans_.size(), sensing_, navigating_, objects_.size(),
-                     modems_.all().size());
+                     modems_.all().size(), limbs_);
   for (std::size_t i = 0; i < vehicles_.size(); ++i) state.vehicles()[i].body = vehicles_[i].start;
   for (std::size_t i = 0; i < humans_.size(); ++i) state.humans()[i] = humans_[i].start;
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
@@ -115,7 +130,9 @@ void PhysicsWorld::apply(PhysicsInputs& inputs, const Sample& sample, std::uint6
   else if (stream.sort == OwnerSort::kVehicle)
     testbed::apply(inputs.vehicles()[stream.owner], sample, step);
   else
-    testbed::apply(inputs.objects()[stream.owner], sample, step);
+    testbed::apply(
+        inputs.objects()[stream.owner], sample, step,
+        objects_[stream.owner].limbs ? &inputs.limbs()[*objects_[stream.owner].limbs] : nullptr);
 }
 
 rov::RayQuery PhysicsWorld::rays() const {
@@ -155,8 +172,12 @@ void PhysicsWorld::step(const PhysicsState& before, const PhysicsInputs& inputs,
   after = before;
   const StepCall call{before, inputs, time, scratch, after};
   const std::size_t vehicles = vehicles_.size(), humans = humans_.size();
-  for (std::size_t i = 0; i < objects_.size(); ++i)
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
     after.objects()[i] = next_object(before.objects()[i], inputs.objects()[i], time);
+    if (const auto k = objects_[i].limbs)
+      after.limbs()[*k] = next_limbs(before.limbs()[*k], inputs.limbs()[*k], after.objects()[i],
+                                     inputs.objects()[i].control.front().hold_s, time);
+  }
   // Each writes its own part of scratch and after, and reads before. Divers, which cost more, come
   // first: no thread is left with one at the end.
   scratch.workers.run(humans + vehicles, [&](std::size_t i, unsigned thread) {

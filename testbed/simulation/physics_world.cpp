@@ -76,7 +76,7 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     if (scene.objects[i].dynamics) NERITIC_TRY_STATUS(world->add_vehicle(scene, i));
     if (scene.objects[i].human) NERITIC_TRY_STATUS(world->add_human(scene, i));
-    if (!scene.objects[i].inputs.empty()) world->objects_.push_back({scene.objects[i].name, i});
+    if (!scene.objects[i].inputs.empty()) world->add_object(scene, i);
   }
   NERITIC_TRY(world->modems_, Modems::create(scene, world->movers_));
   for (const PhysicsModem& modem : world->modems_.all())
@@ -96,8 +96,8 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
 }
 
 void PhysicsWorld::choose_inputs(const scene::Scene& scene) {
-  start_inputs_ =
-      PhysicsInputs(vehicles_.size(), humans_.size(), objects_.size(), modems_.all().size());
+  start_inputs_ = PhysicsInputs(vehicles_.size(), humans_.size(), objects_.size(),
+                                modems_.all().size(), limbs_);
   const auto modem = [&](OwnerSort sort, std::size_t owner) {
     return modems_.sort_of(sort, static_cast<std::uint32_t>(owner));
   };
@@ -115,7 +115,8 @@ void PhysicsWorld::choose_inputs(const scene::Scene& scene) {
                       human.buttons.has_value(), sources_);
   }
   for (std::size_t i = 0; i < objects_.size(); ++i) {
-    streams_.add_object(objects_[i].name, modem(OwnerSort::kObject, i));
+    streams_.add_object(objects_[i].name, modem(OwnerSort::kObject, i),
+                        objects_[i].limbs.has_value());
     start_inputs_.objects()[i] =
         chosen_object_inputs(scene.objects[objects_[i].object].inputs, sources_);
   }
@@ -166,6 +167,17 @@ Status PhysicsWorld::add_human(const scene::Scene& scene, std::size_t index) {
                                  rov::world_pose(root.position_ned_m, root.attitude)));
   humans_.push_back(std::move(human));
   return {};
+}
+
+void PhysicsWorld::add_object(const scene::Scene& scene, std::size_t index) {
+  const scene::Object& object = scene.objects[index];
+  PhysicsObject out{.name = object.name, .object = index};
+  if (object.model >= 0 && object.copies.empty()) {
+    std::string_view missing;
+    out.joints = drawn_joints_of(*scene.models[static_cast<std::size_t>(object.model)], missing);
+    if (missing.empty()) out.limbs = limbs_++;
+  }
+  objects_.push_back(std::move(out));
 }
 
 Status PhysicsWorld::check_start(const scene::Scene& scene, const std::string& name,

@@ -47,7 +47,9 @@ struct PhysicsVehicle {
 // An object of the scene that devices move.
 struct PhysicsObject {
   std::string name;
-  std::size_t object = 0;  // index into Scene::objects
+  std::size_t object = 0;            // index into Scene::objects
+  std::optional<std::size_t> limbs;  // place in PhysicsState::limbs(); none: without limbs
+  DrawnJoints joints;                // of one with limbs: whose model is a diver's
 };
 
 // Memory that a step works in, kept from step to step so that none allocates. Its content means
@@ -146,6 +148,7 @@ class PhysicsWorld {
   Status choose_step(const scene::Scene& scene);
   Status add_vehicle(const scene::Scene& scene, std::size_t object);
   Status add_human(const scene::Scene& scene, std::size_t object);
+  void add_object(const scene::Scene& scene, std::size_t object);
   void choose_inputs(const scene::Scene& scene);
   Status check_start(const scene::Scene& scene, const std::string& name,
                      const sim::BodyShape& shape, const Pose& start) const;
@@ -180,6 +183,7 @@ class PhysicsWorld {
   std::vector<PhysicsObject> objects_;
   std::size_t sensing_ = 0;     // vehicles with sensors
   std::size_t navigating_ = 0;  // those that fly on what they measure
+  std::size_t limbs_ = 0;       // objects with limbs
   StreamTable streams_;
   SourceNames sources_;
   PhysicsInputs start_inputs_;

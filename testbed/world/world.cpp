@@ -41,6 +41,14 @@ std::vector<AgentInfo> agents_of(const PhysicsWorld& world) {
   return out;
 }
 
+// 15 rotations, x y z w, as in samples of joints.
+std::vector<double> joint_values(const diver::JointRotations& joints) {
+  std::vector<double> values(ros::value_count(PayloadKind::kBodyJoints));
+  ros::write_values(BodyJoints{joints}, values);
+  values.resize(4 * joints.size());
+  return values;
+}
+
 // The streams of samples with the ids of the table, then those of images.
 std::vector<StreamInfo> streams_of(const PhysicsWorld& world, const scene::Scene& scene) {
   std::vector<StreamInfo> out;
@@ -292,8 +300,12 @@ Result<Truth> World::truth(const std::string& name) const {
     const HumanPhysics& human = state.humans()[index - vehicles];
     set(human.human.root.position_ned_m, human.human.root.attitude, human.human.root.velocity,
         human.contact);
+    out.joints = joint_values(human.human.limbs.rotation);
   } else {
     const ObjectState& object = state.objects()[index - vehicles - humans];
+    if (const auto limbs = world.objects()[index - vehicles - humans].limbs;
+        limbs && state.limbs()[*limbs].shown != 0)
+      out.joints = joint_values(state.limbs()[*limbs].joints);
     // Until a sample places it, it is where its own track has it.
     const scene::Mount mount{
         .object = static_cast<int>(world.objects()[index - vehicles - humans].object)};

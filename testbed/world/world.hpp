@@ -93,6 +93,8 @@ struct Truth {
   std::array<double, 3> current{};                              // of the water there, world axes
   std::uint64_t touched_steps = 0;  // in which it touched something, so far
   std::vector<double> thruster_n;   // of a vehicle: the commands that act
+  // For a diver, and an object with limbs that samples move: 15 rotations, as the command joints.
+  std::vector<double> joints;
 };
 
 // A diver's instruments as numbers with names (testbed/instruments), and the health of the streams

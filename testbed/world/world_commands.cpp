@@ -87,9 +87,12 @@ Result<Said> diver_command(const std::string& where, const std::string& kind,
   return Said{found->second, values};
 }
 
-Result<Said> object_command(const std::string& where, const std::string& kind,
-                            std::span<const double> given) {
-  if (kind != "pose") return unknown_name(where, kind, {"pose"});
+Result<Said> object_command(const PhysicsObject& object, const std::string& where,
+                            const std::string& kind, std::span<const double> given) {
+  if (kind == "joints" && object.limbs) return diver_command(where, kind, given);
+  if (kind == "joints")
+    return refusal(where, "an object without limbs", "one whose model has the 16 nodes of a diver");
+  if (kind != "pose") return unknown_name(where, kind, {"pose", "joints"});
   std::vector<double> values(given.begin(), given.end());
   if (values.size() != 7) NERITIC_TRY_STATUS(check_count(where, values.size(), 7, 13));
   if (values.size() != 7 && values.size() != 13)
@@ -213,7 +216,7 @@ Status World::command(const std::string& name, const std::string& kind,
   } else {
     sort = OwnerSort::kObject;
     owner -= static_cast<std::uint32_t>(vehicles + humans);
-    NERITIC_TRY(said, object_command(where, kind, values));
+    NERITIC_TRY(said, object_command(world.objects()[owner], where, kind, values));
   }
   const StreamId stream = world.streams().id(sort, owner, said.kind);
   const StreamId events = world.streams().id(sort, owner, PayloadKind::kEvent);

@@ -214,6 +214,36 @@ class Study(unittest.TestCase):
             # The next one takes the order of the one who left, under a new name.
             self.assertIn("P03. Blocks: a, b", self.study("enrol", answers="yes\n")[1])
 
+    def test_markers_reach_the_blocks_program_while_it_runs(self):
+        with tempfile.TemporaryDirectory() as self.scratch:
+            self.folder = os.path.join(self.scratch, "study")
+            program = os.path.join(self.scratch, "program")
+            study = [sys.executable, "-B", os.path.join(TOOLS, "study.py"), "--program", "none", "mark", self.folder, "P01", "seen"]
+            self.write("program", f"""#!{sys.executable}
+import json, socket, subprocess, sys
+port, out = int(sys.argv[1]), sys.argv[2]
+with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listens:
+    listens.bind(("127.0.0.1", port))
+    listens.settimeout(10)
+    heard = []
+    while len(heard) < 2:
+        line = listens.recv(2000)
+        if line:
+            heard.append(json.loads(line)["marker"])
+            if len(heard) == 1:
+                subprocess.run({study!r}, check=True)
+json.dump(heard, open(out, "w"))
+""")
+            os.chmod(program, 0o755)
+            self.write("plan.toml", self.PLAN + 'command = ["{markers}", "{folder}/heard"]\n')
+            self.study("begin", "--plan", os.path.join(self.scratch, "plan.toml"))
+            self.study("enrol", answers="yes\n")
+            self.write("answers", "\n" + "50\n" * 6 + "\n")
+            subprocess.run([sys.executable, "-B", os.path.join(TOOLS, "study.py"), "--program", program, "run", self.folder, "P01",
+                            "--answers", os.path.join(self.scratch, "answers")], capture_output=True, timeout=60)
+            self.assertEqual(self.read("participants/P01/heard"), '["block begins", "seen"]')
+            self.assertFalse(os.path.exists(os.path.join(self.folder, "participants/P01/markers.port")))
+
     def test_blocks_write_into_the_participants_folder_alone(self):
         with tempfile.TemporaryDirectory() as self.scratch:
             self.folder = os.path.join(self.scratch, "study")

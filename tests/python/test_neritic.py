@@ -54,6 +54,28 @@ class Examples(unittest.TestCase):
         self.assertLess(said["worst_m"], 1.5)
         self.assertGreaterEqual(said["answered"], 2)
 
+    def test_messages_by_sound_end_as_was_accepted(self):
+        """Who hears what and when, and what is lost and why: tests/golden/talk.messages.csv (NERITIC_UPDATE_GOLDEN=1 writes it)."""
+        said = {1.4: ("diver", b"look", "rov"), 5.0: ("rov", bytes(64), None), 5.1: ("diver", b"busy", "rov"),
+                10.5: ("diver", b"a", None), 10.52: ("rov", b"b", None), 13.0: ("buoy", bytes(range(40)), "diver")}
+        rows = ["modem,event,kind,from,to,number,bytes,sent_s,heard_s,snr_db"]
+        with neritic.open(TALK, seed=1) as world:
+            for name in ("diver", "rov", "buoy"):
+                def note(seen, name=name):
+                    rows.append(f"{name},{neritic.MODEM_EVENTS[int(seen.event)]},{('message', 'request', 'answer')[int(seen.message_kind)]},"
+                                f"{seen.sender:.0f},{seen.to:.0f},{seen.number:.0f},{seen.bytes:.0f},{seen.sent:.5f},{seen.heard:.5f},"
+                                f"{seen.snr_db:.2f}")
+                world.on(f"{name}/modem", note)
+            while world.time < 20.0:
+                for at in [at for at in said if at <= world.time + 1e-9]:
+                    name, data, to = said.pop(at)
+                    world[name].send(data, to=to)
+                world.tick(12)
+        golden, text = ROOT / "tests/golden/talk.messages.csv", "\n".join(rows) + "\n"
+        if os.environ.get("NERITIC_UPDATE_GOLDEN"):
+            golden.write_text(text)
+        self.assertEqual(text, golden.read_text())
+
     def test_a_sonar_dataset_is_written(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(quietly(example("sonar_dataset").main, MISSION, folder, 2), 2)

@@ -147,6 +147,15 @@ class Remote(unittest.TestCase):
                 to_head = neritic.join._turned(a.orientation, np.array((1.0, 0.0, 0.0)))
                 up = neritic.join._turned(b.orientation, np.array((0.0, 0.0, 1.0)))
                 self.assertGreater(to_head @ up, 0.99)
+                # Her limbs there are her own, and kick.
+                seen = []
+                for _ in range(10):
+                    neritic.join.join(here, there, "eve", seconds=0.1)
+                    a, b = (world.truth("eve").joints.reshape(15, 4) for world in (here, there))
+                    cosine = np.abs(np.sum(a * b, axis=1))
+                    self.assertLess(2 * np.arccos(np.minimum(cosine, 1.0)).max(), 0.2)
+                    seen.append(b)
+                self.assertGreater(np.ptp(np.array(seen), axis=0).max(), 0.1)
 
 
 if __name__ == "__main__":

@@ -12,8 +12,10 @@ import io
 import json
 import os
 import shutil
+import socket
 import subprocess
 import sys
+import threading
 import time
 import tomllib
 
@@ -115,12 +117,50 @@ def now():
     return {"unix_ns": time.time_ns(), "monotonic_ns": time.monotonic_ns()}
 
 
+# Where a block's program listens for markers (neritic dive --markers), while it runs.
+PORT = "markers.port"
+
+
 def note(place, **what):
-    """A marker: one line, on the disk before the next thing happens. recordings' clock is the host's monotonic one."""
+    """A marker: one line, on the disk before the next thing happens, and to the block's program, which keeps it in its
+    recording and gives it to Lab Streaming Layer. recordings' clock is the host's monotonic one."""
+    line = json.dumps({**now(), **what})
+    _send(place, line)
     with open(os.path.join(place, "markers.jsonl"), "a", encoding="utf-8") as file:
-        file.write(json.dumps({**now(), **what}) + "\n")
+        file.write(line + "\n")
         file.flush()
         os.fsync(file.fileno())
+    return line
+
+
+def _send_once_heard(line, port, ended):
+    """Sends it when somebody listens there, which a port that nobody has refuses."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        sender.connect(("127.0.0.1", port))
+        while not ended.is_set():
+            try:
+                sender.send(b"")
+                time.sleep(0.05)
+                sender.send(line.encode())
+                return
+            except ConnectionRefusedError:
+                continue
+
+
+def _send(place, line):
+    try:
+        with open(os.path.join(place, PORT), encoding="ascii") as file:
+            port = int(file.read())
+    except (OSError, ValueError):
+        return  # no program listens
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        sender.sendto(line.encode()[:1024], ("127.0.0.1", port))
+
+
+def _free_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+        free.bind(("127.0.0.1", 0))
+        return free.getsockname()[1]
 
 
 class Screen:
@@ -243,9 +283,18 @@ def _block(asked, place, block, turn):
             os.path.exists(os.path.join(place, f"{block['name']}_{tries}")):
         tries += 1
     record = os.path.join(place, f"{block['name']}_{tries}")
-    words = [w.replace("{record}", record).replace("{folder}", place) for w in block.get("command", [])]
-    note(place, marker="block begins", block=block["name"], turn=turn, attempt=tries)
-    status = subprocess.run([asked.program, *words]).returncode if words else 0
+    port, listens = str(_free_port()), os.path.join(place, PORT)
+    words = [w.replace("{record}", record).replace("{folder}", place).replace("{markers}", port) for w in block.get("command", [])]
+    begins, ended = note(place, marker="block begins", block=block["name"], turn=turn, attempt=tries), threading.Event()
+    if any("{markers}" in w for w in block.get("command", [])):
+        write_file(listens, port)
+        threading.Thread(target=_send_once_heard, args=(begins, int(port), ended), daemon=True).start()
+    try:
+        status = subprocess.run([asked.program, *words]).returncode if words else 0
+    finally:
+        ended.set()
+        if os.path.exists(listens):
+            os.remove(listens)
     note(place, marker="block ends", block=block["name"], turn=turn, attempt=tries, status=status)
     if status != 0:
         raise Failed(f"study: block {block['name']} ended with status {status}; `neritic study run` begins it anew")

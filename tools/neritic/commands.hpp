@@ -82,6 +82,7 @@ struct DiveFlags {
   std::optional<std::uint32_t> runs;  // with the seeds from there on
   bool quiet = false;                 // no summary but --json's
   std::string serve;                  // an address; empty: not for other programs
+  std::string markers;                // a port or an address; empty: none
   std::filesystem::path keys;         // of its clients
 };
 Status run_dive(const DiveFlags& flags);

@@ -24,6 +24,7 @@
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/hud_flags.hpp"
 #include "tools/neritic/load_scene.hpp"
+#include "tools/neritic/markers.hpp"
 #include "tools/neritic/named_sensors.hpp"
 #include "tools/neritic/recorded_scene.hpp"
 #include "tools/neritic/recording_export.hpp"
@@ -266,6 +267,8 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
   NERITIC_TRY_STATUS(make_device(flags, scene, screen));
   NERITIC_TRY(const auto session, Session::create(*screen.device, std::move(scene)));
   NERITIC_TRY_STATUS(make_display(flags, camera, screen));
+  // A headset's frames begin when its runtime says, and are short.
+  if (physics && !screen.headset) physics->await_steps(LivePhysics::kPictureWait);
   std::unique_ptr<Devices> devices;
   if (physics && !replay) {
     NERITIC_TRY(devices, Devices::open(session->scene(), physics->world(), physics->inbox(),
@@ -299,6 +302,12 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
     step_sinks = files->sinks();
   }
   if (view->recorder()) step_sinks.push_back(view->recorder());
+  std::unique_ptr<Markers> markers;
+  if (!flags.markers.empty()) {
+    NERITIC_TRY(markers, Markers::open(flags.markers, files ? files->recording() : nullptr));
+    step_sinks.push_back(markers.get());
+    if (!flags.quiet && !flags.json) fmt::print("{}\n", markers->words());
+  }
   if (replay) {
     step_sinks.push_back(&replay->check);
     sources.push_back(&replay->source);

@@ -11,6 +11,7 @@
 #include "testbed/simulation/mission_outlook.hpp"
 #include "tools/neritic/dive_runs.hpp"
 #include "tools/neritic/dive_told.hpp"
+#include "tools/neritic/markers.hpp"
 #include "tools/neritic/step_files.hpp"
 
 namespace neritic::tools {
@@ -34,6 +35,7 @@ std::string physics_flag(const DiveFlags& flags) {
   if (!flags.play.empty()) return "--play";
   if (!flags.replay.empty()) return "--replay";
   if (!flags.restore.empty()) return "--restore";
+  if (!flags.markers.empty()) return "--markers";
   if (flags.realtime) return "--realtime";
   if (flags.json) return "--json";
   if (flags.runs) return "--runs";
@@ -47,6 +49,7 @@ std::string flag_beside_replay(const DiveFlags& flags) {
   if (flags.seconds) return "--seconds";
   if (!flags.play.empty()) return "--play";
   if (!flags.restore.empty()) return "--restore";
+  if (!flags.markers.empty()) return "--markers";
   if (flags.seed) return "--seed";
   if (flags.realtime) return "--realtime";
   return "";
@@ -67,10 +70,10 @@ Status check_replay_flags(const DiveFlags& flags) {
     return refusal(alone, "no --replay beside it", "with a recording whose motion is shown");
   const std::string beside = flags.replay.empty() ? "" : flag_beside_replay(flags);
   if (beside.empty()) return {};
-  return refusal(
-      "--replay", beside + " beside it",
-      "no --seconds, --record, --save, --play, --restore, --seed, --realtime; it runs as "
-      "long as the recording, from where that begins");
+  return refusal("--replay", beside + " beside it",
+                 "no --seconds, --record, --save, --play, --restore, --markers, --seed, "
+                 "--realtime; it runs as "
+                 "long as the recording, from where that begins");
 }
 
 Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
@@ -155,6 +158,14 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,
     NERITIC_TRY(devices,
                 Devices::open(scene, world, physics->inbox(), DeviceSource::Pace::kThread));
     for (SampleSource* source : devices->sources()) sources.push_back(source);
+  }
+  std::unique_ptr<Markers> markers;
+  if (!flags.markers.empty()) {
+    if (!flags.realtime)
+      return refusal("--markers", "a run in simulated time", "--realtime, or a window");
+    NERITIC_TRY(markers, Markers::open(flags.markers, files.recording()));
+    sinks.push_back(markers.get());
+    if (!flags.quiet && !flags.json) fmt::print("{}\n", markers->words());
   }
   StepProgress progress("second", start_s + seconds);
   sinks.push_back(&progress);

@@ -28,16 +28,18 @@ class PacketMaker {
  public:
   explicit PacketMaker(std::string device) : device_(std::move(device)) {
     const net::SuitFrame frame = suit_frame(diver::straight_joints(), {}, Quat(1.0, 0.0, 0.0, 0.0));
-    body_.assign(frame.body.begin(), frame.body.end());
+    suit_ = net::encode_mxtp({.body_segments = net::kMxtpBodySegments},
+                             {frame.body.data(), frame.body.size()});
   }
   bool makes(std::string_view device) const { return device_ == device; }
   std::vector<std::byte> next() {
     const std::uint64_t n = number_++;
-    if (device_ == "mxtp")
-      return net::encode_mxtp({.sample = static_cast<std::uint32_t>(n),
-                               .time_ms = static_cast<std::uint32_t>(n / 100),
-                               .body_segments = net::kMxtpBodySegments},
-                              body_);
+    if (device_ == "mxtp") {
+      // The same posture under the next number: the flood is to load the receiver, not itself.
+      net::put_mxtp_number(suit_, static_cast<std::uint32_t>(n),
+                           static_cast<std::uint32_t>(n / 100));
+      return suit_;
+    }
     if (device_ == "strap")
       return net::encode_ecg({n * 10'000'000, std::vector<std::int32_t>(73, 100)});
     if (device_ == "microphone") {
@@ -54,7 +56,7 @@ class PacketMaker {
 
  private:
   std::string device_;
-  std::vector<net::MxtpPose> body_;
+  std::vector<std::byte> suit_;
   std::uint64_t number_ = 0;
 };
 

@@ -107,6 +107,7 @@ Status simulate_latency(const SimulateFlags& flags, scene::Scene scene,
   UsedPackets used;
   const auto physics =
       LivePhysics::create(std::move(made), {.pace = LivePhysics::Pace::kClock, .clock = &run});
+  physics->await_steps(LivePhysics::kPictureWait);
   physics->observe([&](const sim::Snapshot<PhysicsState>& step) { used.step(step.step); },
                    [&](const Sample& sample) { used.use(sample); });
   gpu::DeviceOptions device_options;
@@ -122,7 +123,8 @@ Status simulate_latency(const SimulateFlags& flags, scene::Scene scene,
   physics->start();
   const auto period_ns = static_cast<TimeNs>(1e9 / rate_hz);
   const double seconds = flags.seconds.value_or(kLatencySeconds);
-  std::vector<double> newest_ms, all_ms, drawn_ms;
+  std::vector<double> newest_ms, all_ms, drawn_ms, frame_ms;
+  TimeNs last_ns = 0;  // the frame before began
   Status status;
   TimeNs due_ns = now_ns();
   const TimeNs end_ns = due_ns + static_cast<TimeNs>(1e9 * seconds);
@@ -131,9 +133,10 @@ Status simulate_latency(const SimulateFlags& flags, scene::Scene scene,
     due_ns = std::max(due_ns + period_ns, now_ns() - period_ns);
     if (const TimeNs wait_ns = due_ns - now_ns(); wait_ns > 0)
       std::this_thread::sleep_for(std::chrono::nanoseconds(wait_ns));
-    const TimeNs begun_ns = now_ns();
+    const TimeNs frame_ns = now_ns();
     FrameRequest request;
     request.time_s = physics->follow(run.now(), 0.0);
+    const TimeNs begun_ns = now_ns();
     request.next_time_s = request.time_s + 1.0 / rate_hz;
     request.frame = frame;
     request.cameras = {0};
@@ -144,7 +147,9 @@ Status simulate_latency(const SimulateFlags& flags, scene::Scene scene,
     if (!rendered.ok()) status = rendered.error();
     const TimeNs done_ns = now_ns();
     const std::vector<TimeNs> arrived = used.shown_by(step);
+    const TimeNs between_ns = frame_ns - std::exchange(last_ns, frame_ns);
     if (frame < 5 || arrived.empty()) continue;  // pipelines are made, caches are cold
+    frame_ms.push_back(to_ms(between_ns));
     drawn_ms.push_back(to_ms(done_ns - begun_ns));
     newest_ms.push_back(to_ms(done_ns - arrived.back()));
     for (const TimeNs at_ns : arrived) all_ms.push_back(to_ms(done_ns - at_ns));
@@ -156,8 +161,7 @@ Status simulate_latency(const SimulateFlags& flags, scene::Scene scene,
   NERITIC_TRY_STATUS(status);
   if (newest_ms.empty()) return failure(ErrorCode::kUnsupported, "no picture showed a packet");
   const Times newest = times_of(newest_ms), all = times_of(all_ms), drawn = times_of(drawn_ms);
-  const double period_ms = std::max(to_ms(period_ns), drawn.median_ms),
-               step_ms = 1e3 * physics->world().step_s();
+  const double period_ms = times_of(frame_ms).median_ms, step_ms = 1e3 * physics->world().step_s();
   if (flags.json) {
     fmt::print("{}\n", json_text({{"device", device->info().name},
                                   {"pictures", newest_ms.size()},

@@ -119,6 +119,7 @@ py::dict truth_of(const Truth& truth) {
   out["angular_velocity"] = array_of(truth.angular_velocity);
   out["current"] = array_of(truth.current);
   out["thruster_n"] = array_of(truth.thruster_n);
+  out["joints"] = array_of(truth.joints);
   out["touched_steps"] = truth.touched_steps;
   return out;
 }

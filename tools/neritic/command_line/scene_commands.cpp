@@ -155,6 +155,10 @@ void add_dive(CLI::App& app, CommandLine& line) {
                       "lets other programs read and command this dive (neritic serve, hud "
                       "--connect): tcp://ADDRESS:PORT; beyond 127.x.x.x with --keys");
   command->add_option("--keys", flags->keys, "with --serve: folder of keys (neritic keys)");
+  command->add_option(
+      "--markers", flags->markers,
+      "lines of text that come by UDP to this port (neritic study sends them) go into "
+      "the recording, as /markers, and to Lab Streaming Layer");
   command->add_flag("--realtime", flags->realtime, "physics without pictures at the clock's pace");
   command->add_flag("--json", flags->json, "the dive's summary as JSON");
   command->add_flag("--fast", flags->fast, "with --headless: frames as fast as they come");

@@ -137,3 +137,8 @@ class TrackedObject(Agent):
         if velocity is not None:
             values += [*velocity, *angular_velocity]
         self.command("pose", values, hold)
+
+    def joints(self, rotations: ArrayLike, hold: float = 0.0) -> None:
+        """The limbs of a diver who swims elsewhere, with the poses: as of Diver.joints(). The object has
+        a diver's model."""
+        self.command("joints", rotations, hold)

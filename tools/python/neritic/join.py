@@ -6,7 +6,8 @@ The scene here has the participant by its own physics and the others as objects 
 server's scene has the participant so. Poses go both ways as samples, 60 times a second, with velocities,
 and each side moves them on between two (testbed/samples). A participant that falls silent for half a
 second goes back to its own track. Vehicles and divers join alike: elsewhere a diver is an object with a diver's
-model, whose limbs move by its clip. What is said by modem stays in the scene where it is said.
+model, whose limbs are the diver's own: a suit here moves them there.
+What is said by modem stays in the scene where it is said.
 """
 
 from __future__ import annotations
@@ -45,6 +46,8 @@ def _place(world: World, name: str, truth: Truth, diver: bool) -> None:
     drawn = _times(truth.orientation, _STANDS) if diver else truth.orientation
     world[name].pose(truth.position, drawn, _turned(truth.orientation, truth.linear_velocity),
                      _turned(truth.orientation, truth.angular_velocity), hold=_HOLD_S)
+    if diver and truth.joints.size and f"{name}/joints" in world._places:
+        world[name].joints(truth.joints, hold=_HOLD_S)
 
 
 def exchange(here: World, there: RemoteWorld, own: Optional[str]) -> int:

@@ -227,6 +227,7 @@ class Truth:
     current: Float  # of the water there: east, north, up
     thruster_n: Float  # of a vehicle: the commands that act, in newtons
     touched_steps: int  # in which it touched something, so far
+    joints: Float  # of a diver: 15 rotations as of Diver.joints(), in one row; empty: none are known
 
 
 MODEM_EVENTS = ("sent", "refused", "received", "too_weak", "noisy", "collided", "was_sending")

@@ -150,11 +150,12 @@ class Core:
             self._socket.send_multipart(frames if data is None else [*frames, data])
             until = time.monotonic() + self._patience + lasts
             while True:
-                left = until - time.monotonic()
-                if left <= 0 or not self._socket.poll(left * 1e3):
+                self._socket.rcvtimeo = max(int((until - time.monotonic()) * 1e3), 0)
+                try:
+                    frames = self._socket.recv_multipart()
+                except self._zmq.Again:
                     raise Error(f"{self._address}: no answer in {self._patience + lasts:g} s: no server, "
-                                "one that is busy, or one with other keys")
-                frames = self._socket.recv_multipart()
+                                "one that is busy, or one with other keys") from None
                 answer = self._msgpack.unpackb(frames[0])
                 if answer.get("id") != self._next:
                     continue  # of a call that was given up
@@ -261,14 +262,21 @@ class Core:
         self._call("inject", stream=stream, values=values.tolist(), source=source, **stamps)
 
     def truth(self, agent: str) -> dict[str, Any]:
-        values = np.array(self._call("truth", agent=agent)[0]["values"])
+        answer = self._call("truth", agent=agent)[0]
+        values = np.array(answer["values"])
         return {"position": values[0:3], "orientation": values[3:7], "linear_velocity": values[7:10],
                 "angular_velocity": values[10:13], "current": values[13:16],
-                "touched_steps": int(values[16]), "thruster_n": values[17:]}
+                "touched_steps": int(values[16]), "thruster_n": values[17:],
+                "joints": np.array(answer.get("joints", ()), np.float64)}
 
-    def poses(self) -> NDArray[np.float64]:
+    def poses(self) -> tuple[NDArray[np.float64], dict[int, NDArray[np.float64]]]:
         answer, frames = self._call("poses")
-        return np.frombuffer(frames[answer["poses"]["frame"]], "<f8").reshape(len(self.agents), 13)
+        poses = np.frombuffer(frames[answer["poses"]["frame"]], "<f8").reshape(len(self.agents), 13)
+        limbs = answer.get("joints")
+        if limbs is None:
+            return poses, {}
+        joints = np.frombuffer(frames[limbs["frame"]], "<f8").reshape(limbs["rows"], limbs["columns"])
+        return poses, dict(zip(limbs["agents"], joints))
 
     def save(self) -> bytes:
         answer, frames = self._call("save", 10.0)
@@ -337,8 +345,10 @@ class RemoteWorld(World):
     def poses(self) -> dict[str, Truth]:
         """The true motion of every agent, in one call; without the current, forces and contacts."""
         nothing = np.zeros(0)
-        return {agent[0]: Truth(row[0:3], row[3:7], row[7:10], row[10:13], nothing, nothing, 0)
-                for agent, row in zip(self._core.agents, self._core.poses())}
+        poses, joints = self._core.poses()
+        return {agent[0]: Truth(row[0:3], row[3:7], row[7:10], row[10:13], nothing, nothing, 0,
+                                joints.get(i, nothing))
+                for i, (agent, row) in enumerate(zip(self._core.agents, poses))}
 
     def counts(self) -> dict[str, int]:
         """The server's counts: clients, requests, refusals, losses."""
