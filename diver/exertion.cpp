@@ -43,6 +43,10 @@ double metabolic_power_w(double work_w, double moving_w) {
   return std::max(0.0, work_w) / kWorkEfficiency + kCostOfMoving * std::max(0.0, moving_w);
 }
 
+double work_of_heat_w(double heat_w) {
+  return kWorkEfficiency * std::max(0.0, heat_w);
+}
+
 double oxygen_for_l_min(double metabolic_w) {
   return kRestingOxygen_l_min + metabolic_w * 60.0 / kJoulePerLitre;
 }

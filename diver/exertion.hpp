@@ -33,6 +33,8 @@ double usual_most_oxygen_l_min(double mass_kg);
 // Watts above rest that the limbs' work costs. work_w: mechanical, on the water and elsewhere;
 // moving_w: to speed limbs up (LimbWork, motion.hpp).
 double metabolic_power_w(double work_w, double moving_w);
+// The work that costs as much as heat which muscles make by shivering.
+double work_of_heat_w(double heat_w);
 double oxygen_for_l_min(double metabolic_w);
 
 // Metabolic watts above rest that the person keeps up for long; and at most, the rest of the

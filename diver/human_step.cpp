@@ -87,11 +87,12 @@ Breathing breathing_of(const Body& body, const HumanState& state, double ambient
   return {minute_l, 1e-3 * minute_l / tidal_volume(body, minute_l)};
 }
 
-void live(const Body& body, HumanState& state, double dt_s) {
+void live(const Body& body, HumanState& state, double dt_s,
+          const BorrowedTank* borrowed = nullptr) {
   VitalInputs in;
   in.oxygen_l_min = state.life.lungs.oxygen_l_min;
   in.most_oxygen_l_min = body.fitness.most_oxygen_l_min;
-  in.mix = breathed_mix(body, state);
+  in.mix = borrowed ? borrowed->place.mix : breathed_mix(body, state);
   in.ambient_pa = pressure_at(body, state.root.position_ned_m.z);
   in.surface_pa = body.surface_pa;
   in.cns_percent = state.life.computer.oxygen.cns_percent;
@@ -103,7 +104,8 @@ void live(const Body& body, HumanState& state, double dt_s) {
 }
 
 // into_s: of the step, when this part of it begins.
-void substep(const Body& body, HumanState& state, double into_s, double dt_s) {
+void substep(const Body& body, HumanState& state, double into_s, double dt_s,
+             BorrowedTank* borrowed) {
   const HumanInputs& in = state.held;
   LifeState& life = state.life;
   // Gas where the body is now, then motion with that gas.
@@ -117,7 +119,7 @@ void substep(const Body& body, HumanState& state, double into_s, double dt_s) {
   breath.bias_m3 = in.breath_bias_m3;
   breath.hold = in.hold_breath != 0;
   breath.tank = in.tank;
-  step_lungs(body, life.lungs, life.tanks, breath, ambient_pa, dt_s);
+  step_lungs(body, life.lungs, life.tanks, breath, ambient_pa, dt_s, borrowed);
   step_jacket(body, life.jacket_moles, life.tanks, in.buttons, thorax_place(body, state), dt_s);
 
   const LimbState before = state.limbs;
@@ -138,7 +140,7 @@ void substep(const Body& body, HumanState& state, double into_s, double dt_s) {
 }  // namespace
 
 HumanState step(const Body& body, const HumanState& state, const HumanInputs& inputs, double dt_s,
-                double longest_substep_s) {
+                double longest_substep_s, BorrowedTank* borrowed) {
   HumanState next = state;
   take_inputs(inputs, next);
   if (!(dt_s > 0.0 && dt_s <= kLongestStep_s)) {
@@ -148,8 +150,8 @@ HumanState step(const Body& body, const HumanState& state, const HumanInputs& in
   // A step that is as long as a substep, but for rounding, is one.
   const double count = std::ceil(dt_s / longest_substep_s - 1e-9);
   for (int i = 0; i < static_cast<int>(count); ++i)
-    substep(body, next, i * (dt_s / count), dt_s / count);
-  live(body, next, dt_s);
+    substep(body, next, i * (dt_s / count), dt_s / count, borrowed);
+  live(body, next, dt_s, borrowed);
   return next;
 }
 

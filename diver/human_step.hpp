@@ -16,9 +16,10 @@ inline constexpr double kMostWaterAcceleration_m_s2 = 100.0;
 
 // Inputs that are not finite or beyond any diver's are refused: the last good value is held, and
 // state.refused_inputs counts it (each joint for itself). So is a dt_s outside (0, 10] s: then
-// nothing moves. The result is finite if the state was.
+// nothing moves. The result is finite if the state was. borrowed: breathed from in place of the
+// diver's own tanks.
 HumanState step(const Body& body, const HumanState& state, const HumanInputs& inputs, double dt_s,
-                double longest_substep_s = kLongestSubstep_s);
+                double longest_substep_s = kLongestSubstep_s, BorrowedTank* borrowed = nullptr);
 
 // At rest at a pose, tanks full, joints as given, the jacket filled so far that the diver floats
 // there in the middle of a quiet breath (or empty, where the diver floats without).

@@ -61,7 +61,7 @@ double middle_of_quiet_breath(const Body& body) {
 }
 
 void step_lungs(const Body& body, LungState& lungs, TankState& tanks, const BreathInputs& in,
-                double ambient_pa, double dt_s) {
+                double ambient_pa, double dt_s, BorrowedTank* borrowed) {
   lungs.oxygen_l_min +=
       (in.oxygen_demand_l_min - lungs.oxygen_l_min) * -std::expm1(-dt_s / kOxygenLag_s);
   if (in.hold) {
@@ -69,7 +69,9 @@ void step_lungs(const Body& body, LungState& lungs, TankState& tanks, const Brea
     return;
   }
   lungs.held_moles = 0.0;
-  const GasMix mix = in.tank < body.tank_count ? body.tanks[in.tank].mix : kAir;
+  const GasMix mix = borrowed                    ? borrowed->place.mix
+                     : in.tank < body.tank_count ? body.tanks[in.tank].mix
+                                                 : kAir;
   const double minute_l = in.ventilation_l_min > 0.0
                               ? in.ventilation_l_min
                               : ventilation_l_min(body, lungs.oxygen_l_min, mix, ambient_pa);
@@ -91,14 +93,17 @@ void step_lungs(const Body& body, LungState& lungs, TankState& tanks, const Brea
     return;
   }
   // Without a tank there is only what is above the water.
-  if (body.tank_count == 0) {
+  if (body.tank_count == 0 && !borrowed) {
     const bool above = ambient_pa <= body.surface_pa;
     if (above) lungs.volume_m3 += change;
     count_fed(lungs, above, dt_s);
     return;
   }
   const double moles = change * ambient_pa / kAirHeat;
-  const double given = breathe_from(body, tanks, in.tank, moles, ambient_pa, dt_s);
+  const double given = borrowed
+                           ? breathe_tank(borrowed->place, borrowed->moles, moles, ambient_pa, dt_s)
+                           : breathe_from(body, tanks, in.tank, moles, ambient_pa, dt_s);
+  if (borrowed) borrowed->taken_moles += given;
   lungs.volume_m3 += given * kAirHeat / ambient_pa;
   lungs.breathed_moles += given;
   count_fed(lungs, given >= 0.5 * moles, dt_s);

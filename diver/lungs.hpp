@@ -52,8 +52,9 @@ struct BreathInputs {
   std::size_t tank = 0;
 };
 
+// borrowed: breathed from instead of tanks, where there is one.
 void step_lungs(const Body& body, LungState& lungs, TankState& tanks, const BreathInputs& inputs,
-                double ambient_pa, double dt_s);
+                double ambient_pa, double dt_s, BorrowedTank* borrowed = nullptr);
 
 // Seconds until the tank is down to reserve_pa (or ambient pressure, where that is more) at that
 // ventilation and depth; infinite where nothing is breathed.

@@ -14,9 +14,8 @@ constexpr double kChokedFlow = 0.6847314564;  // sqrt(gamma) (2 / (gamma + 1))^3
 constexpr double kDemand_m3_s = 5e-3;
 
 // The gas that can leave before the tank reaches that pressure.
-double moles_above(const Body& body, const TankState& tanks, std::size_t tank, double pressure_pa) {
-  const TankPlace& place = body.tanks[tank];
-  return std::max(0.0, tanks.moles[tank] - moles_in(place.mix, place.water_volume_m3, pressure_pa));
+double moles_above(const TankPlace& place, double moles, double pressure_pa) {
+  return std::max(0.0, moles - moles_in(place.mix, place.water_volume_m3, pressure_pa));
 }
 
 }  // namespace
@@ -36,13 +35,19 @@ double tank_pressure(const Body& body, const TankState& tanks, std::size_t tank)
 
 double breathe_from(const Body& body, TankState& tanks, std::size_t tank, double wanted_moles,
                     double ambient_pa, double dt_s) {
-  if (tank >= body.tank_count || !(wanted_moles > 0.0)) return 0.0;
-  const double over_pa = tank_pressure(body, tanks, tank) - ambient_pa;
+  if (tank >= body.tank_count) return 0.0;
+  return breathe_tank(body.tanks[tank], tanks.moles[tank], wanted_moles, ambient_pa, dt_s);
+}
+
+double breathe_tank(const TankPlace& place, double& moles, double wanted_moles, double ambient_pa,
+                    double dt_s) {
+  if (!(wanted_moles > 0.0)) return 0.0;
+  const double over_pa = pressure_of(place.mix, place.water_volume_m3, moles) - ambient_pa;
   const double share = std::clamp(over_pa / kWeakTank_pa, 0.0, 1.0);
   const double most =
       share * kDemand_m3_s * dt_s * ambient_pa / (kGasConstant * kTankTemperature_k);
-  const double given = std::min({wanted_moles, most, moles_above(body, tanks, tank, ambient_pa)});
-  tanks.moles[tank] -= given;
+  const double given = std::min({wanted_moles, most, moles_above(place, moles, ambient_pa)});
+  moles -= given;
   return given;
 }
 
@@ -52,7 +57,7 @@ double flow_from(const Body& body, TankState& tanks, std::size_t tank, double ar
   const double from_pa = std::min(tank_pressure(body, tanks, tank), back_pa + kHosePressure_pa);
   const double given =
       std::min(dt_s * orifice_moles_s(body.tanks[tank].mix, area_m2, from_pa, back_pa),
-               moles_above(body, tanks, tank, back_pa));
+               moles_above(body.tanks[tank], tanks.moles[tank], back_pa));
   tanks.moles[tank] -= given;
   return given;
 }

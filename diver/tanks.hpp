@@ -28,6 +28,15 @@ inline constexpr double kWeakTank_pa = 5e5;
 // none where the tank is at ambient pressure, less than a hard breath where it is near.
 double breathe_from(const Body& body, TankState& tanks, std::size_t tank, double wanted_moles,
                     double ambient_pa, double dt_s);
+// A regulator's demand valve on one tank that has moles; takes what comes off them.
+double breathe_tank(const TankPlace& place, double& moles, double wanted_moles, double ambient_pa,
+                    double dt_s);
+// Another diver's tank, breathed from by the second regulator on it.
+struct BorrowedTank {
+  TankPlace place;
+  double moles = 0.0;  // in it
+  double taken_moles = 0.0;
+};
 // The same by way of an opening of an effective area behind the first stage, into back_pa.
 double flow_from(const Body& body, TankState& tanks, std::size_t tank, double area_m2,
                  double back_pa, double dt_s);

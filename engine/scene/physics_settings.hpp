@@ -86,12 +86,35 @@ struct InputChoice {
   std::string then = "autopilot";  // afterwards: "autopilot" or "nobody"
 };
 
+// An object that grippers and hands can carry: a point with weight, buoyancy and drag.
+struct Thing {
+  double mass_kg = 1.0;
+  double volume_m3 = 0.5e-3;   // of the water that it displaces
+  double drag_area_m2 = 0.01;  // C_d A
+  bool racked = false;         // stays where it is until it is grabbed for the first time
+};
+// A vehicle's gripper, or a diver's hands, of which the right one holds.
+struct Grip {
+  Vec3 position_m{0.0};      // of a gripper, its vehicle's own axes
+  double reach_m = 0.12;     // that a thing may be off
+  double strength_n = 97.0;  // a larger pull slips (Newton Subsea Gripper, 97 N at the tips)
+  double most_m_s = 0.25;    // faster past each other, nothing is grabbed
+};
+
+// The jets of a vehicle's thrusters, which push divers and things.
+struct Wash {
+  double diameter_m = 0.076;  // of a T200's propeller
+  double reach_m = 10.0;
+};
+
 // Settings of an object that is a vehicle with its own physics.
 struct Dynamics {
   std::filesystem::path file;          // its parameters
   std::optional<Mission> mission;      // absent: nobody steers
   std::uint64_t failed_thrusters = 0;  // bit i: the file's thruster i + 1
   std::optional<Vec3> tether_anchor_m;
+  std::optional<Grip> gripper;
+  std::optional<Wash> wash;  // absent: thrusters move no water but by their force
   // The state that control and guidance use: the vehicle's own sensors, or its true state.
   // kBySensors: the sensors, if it has enough of them.
   enum class Navigation { kBySensors, kTruth, kMeasured };
@@ -111,12 +134,38 @@ struct SwimPlan {
   bool repeat = false;
 };
 
+// Of a diver: how gas and cold change one who does not notice (diver/condition.hpp).
+struct Condition {
+  std::vector<std::string> effects;  // empty: all
+  bool acts = true;                  // on what the diver does
+  double water_c = 12.0, fat_share = 0.15;
+  std::optional<double> oxygen_tolerance;  // absent: drawn from the scene's seed
+};
+
+// Of a diver: a regulator that blows gas off by itself, from at_s until until_s.
+struct FreeFlow {
+  double at_s = 0.0, until_s = 1e9;
+  std::uint64_t tank = 0;  // of the diver's file, from 0
+  double area_m2 = 10e-6;  // of the open valve
+};
+// Of a diver: a buddy's second regulator, and own ones that fail.
+struct Regulator {
+  std::string donor;  // the diver whose gas this one breathes without any; empty: nobody
+  std::uint64_t donor_tank = 0;
+  double hose_m = 1.0;      // the farthest that both mouths may be apart
+  double reaction_s = 5.0;  // from want in reach until it is breathed
+  std::vector<FreeFlow> free_flows;
+};
+
 // Settings of an object that is a diver who swims by moving limbs.
 struct Human {
   std::filesystem::path file;    // body and gear
   std::optional<SwimPlan> swim;  // absent: hovers
   // The jacket's buttons over time: from its first row on they are pressed so. Empty: none.
   std::filesystem::path jacket_buttons;
+  std::optional<Condition> condition;  // absent: not computed
+  std::optional<Grip> hands;
+  std::optional<Regulator> regulator;  // absent: breathes from its own tanks, which hold
   // Groups not named: their recording where there is a file, else autopilot.
   std::vector<InputChoice> inputs;
 };

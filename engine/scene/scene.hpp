@@ -62,6 +62,7 @@ struct Object {
   std::optional<Dynamics> dynamics;  // it moves by physics, from its mount's pose at time 0 on
   std::optional<Human> human;        // likewise, by its limbs
   std::vector<InputChoice> inputs;   // the source of its pose; empty: its mount alone
+  std::optional<Thing> thing;        // that grippers and hands can carry
   // Extra copies: object_from_copy. Empty: drawn once at the mount. Each copy has its own label.
   std::vector<Mat4> copies;
   std::optional<Flock> flock = {};  // moves the copies

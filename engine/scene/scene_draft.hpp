@@ -134,6 +134,13 @@ SpeedOver read_speed_over(TableReader& reader, SpeedOver otherwise);
 // absent. recorded: the groups for which the scene names a file. then: the default of that key.
 std::vector<InputChoice> read_inputs(TableReader& reader, KeyList groups, KeyList recorded,
                                      const std::string& then = "autopilot");
+// scene_read_condition.cpp: the tables condition and regulator of a diver, where they are there.
+std::optional<Condition> read_condition(TableReader& reader);
+std::optional<Regulator> read_regulator(TableReader& reader);
+// scene_read_carry.cpp: the tables thing, gripper, hands, wash, where they are there.
+std::optional<Wash> read_wash(TableReader& reader);
+std::optional<Thing> read_thing(TableReader& reader);
+std::optional<Grip> read_grip(TableReader& reader, Key key);
 // scene_read_modem.cpp: the table modem, where it is there; [acoustics].
 std::optional<Modem> read_modem(TableReader& reader);
 Result<Acoustics> read_acoustics(const SceneSource& source, const TomlValue& table);

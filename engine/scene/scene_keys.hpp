@@ -94,6 +94,12 @@ inline constexpr auto kObjectKeys = std::to_array<Key>({"name",
                                                         "human",
                                                         "swim",
                                                         "jacket_buttons",
+                                                        "condition",
+                                                        "thing",
+                                                        "gripper",
+                                                        "wash",
+                                                        "hands",
+                                                        "regulator",
                                                         "inputs",
                                                         "modem",
                                                         "cameras",
@@ -123,6 +129,17 @@ inline constexpr auto kOrbitKeys =
 inline constexpr auto kFollowKeys = std::to_array<Key>({"object", "offset_m"});
 inline constexpr auto kSwimKeys = std::to_array<Key>(
     {"waypoints_m", "speed_m_s", "speed_over", "acceptance_m", "repeat", "motion"});
+inline constexpr auto kWashKeys = std::to_array<Key>({"diameter_m", "reach_m"});
+inline constexpr auto kThingKeys =
+    std::to_array<Key>({"mass_kg", "volume_l", "drag_area_m2", "racked"});
+inline constexpr auto kGripperKeys =
+    std::to_array<Key>({"position_m", "reach_m", "strength_n", "most_m_s"});
+inline constexpr auto kHandsKeys = std::to_array<Key>({"reach_m", "strength_n", "most_m_s"});
+inline constexpr auto kConditionKeys =
+    std::to_array<Key>({"effects", "acts", "water_c", "fat_share", "oxygen_tolerance"});
+inline constexpr auto kRegulatorKeys =
+    std::to_array<Key>({"donor", "donor_tank", "hose_m", "reaction_s", "free_flow"});
+inline constexpr auto kFreeFlowKeys = std::to_array<Key>({"at_s", "until_s", "tank", "area_mm2"});
 inline constexpr auto kDiverInputKeys =
     std::to_array<Key>({"body", "hands", "head", "gaze", "buttons", "breath", "heart", "gas"});
 inline constexpr auto kVehicleInputKeys = std::to_array<Key>({"wrench", "setpoint", "fault"});

@@ -17,10 +17,25 @@ constexpr Interval kAnySeconds{-1e9, 1e9, false, false, "seconds"};
 // The most thrusters that a vehicle can have.
 constexpr std::size_t kMaxFailedThruster = 16;
 
-constexpr Key kPhysicsOnly[] = {"collision",       "dynamics",   "mission", "failed_thrusters",
-                                "tether_anchor_m", "navigation", "human",   "swim",
-                                "jacket_buttons",  "inputs",     "modem"};
-constexpr Key kDynamicsOnly[] = {"mission", "failed_thrusters", "tether_anchor_m", "navigation"};
+constexpr Key kPhysicsOnly[] = {"collision",
+                                "dynamics",
+                                "mission",
+                                "failed_thrusters",
+                                "tether_anchor_m",
+                                "navigation",
+                                "human",
+                                "swim",
+                                "jacket_buttons",
+                                "inputs",
+                                "modem",
+                                "condition",
+                                "regulator",
+                                "thing",
+                                "gripper",
+                                "hands",
+                                "wash"};
+constexpr Key kDynamicsOnly[] = {"mission",    "failed_thrusters", "tether_anchor_m",
+                                 "navigation", "gripper",          "wash"};
 // The default classes that vehicles cannot pass.
 constexpr Key kSolidClasses[] = {"seabed", "rock", "wreck", "structure", "pipe"};
 
@@ -106,6 +121,7 @@ class VehiclePhysicsReader {
     read_collision();
     read_human();
     read_tracked();
+    read_carried();
     modem = read_modem(reader_);
     if (reader_.has("modem") && !reader_.has("dynamics") && !reader_.has("human") && !is_tracked())
       reader_.refuse("modem", "a modem of what has dynamics, human or inputs");
@@ -125,6 +141,8 @@ class VehiclePhysicsReader {
     if (reader_.has("failed_thrusters")) dynamics.failed_thrusters = read_failed();
     if (reader_.has("tether_anchor_m"))
       dynamics.tether_anchor_m = reader_.vector3("tether_anchor_m", Vec3(0.0), kAnyMetres);
+    dynamics.gripper = read_grip(reader_, "gripper");
+    dynamics.wash = read_wash(reader_);
     if (reader_.has("navigation"))
       dynamics.navigation = reader_.choice("navigation", "truth",
                                            std::to_array<Key>({"truth", "measured"})) == "truth"
@@ -145,7 +163,8 @@ class VehiclePhysicsReader {
     const Scene& scene = draft_.scene;
     Object& object = object_.object;
     const auto name = scene.class_names.find(object.class_id);
-    const bool still = !object_.placement.track && object_.clip.empty() && !is_tracked();
+    const bool still =
+        !object_.placement.track && object_.clip.empty() && !is_tracked() && !reader_.has("thing");
     const bool solid = name != scene.class_names.end() && still && object_.request &&
                        std::ranges::find(kSolidClasses, name->second) != std::end(kSolidClasses);
     object.collision = solid ? Collision::kMesh : Collision::kNone;
@@ -160,12 +179,21 @@ class VehiclePhysicsReader {
     if (object.collision != Collision::kNone && !object_.request)
       reader_.refuse("collision", "no such key for what is not drawn");
     if (object.collision != Collision::kNone && !still)
-      reader_.refuse("collision", "false, since what has a track, a clip or inputs is not solid");
+      reader_.refuse("collision",
+                     "false, since what has a track, a clip, inputs or thing is not solid");
   }
 
   // Whether devices move it, though it is neither a vehicle nor a diver.
   bool is_tracked() const {
     return reader_.has("inputs") && !reader_.has("human") && !reader_.has("dynamics");
+  }
+
+  void read_carried() {
+    object_.object.thing = read_thing(reader_);
+    if (!object_.object.thing) return;
+    for (const Key key :
+         {"track", "scatter", "copies", "copies_file", "flock", "on", "dynamics", "human", "clip"})
+      if (reader_.has(key)) reader_.refuse(key, "no such key beside thing");
   }
 
   void read_tracked() {
@@ -177,7 +205,7 @@ class VehiclePhysicsReader {
 
   void read_human() {
     if (!reader_.has("human")) {
-      for (const Key key : {"swim", "jacket_buttons"})
+      for (const Key key : {"swim", "jacket_buttons", "condition", "regulator", "hands"})
         if (reader_.has(key)) reader_.refuse(key, "no such key without human");
       return;
     }
@@ -190,6 +218,9 @@ class VehiclePhysicsReader {
       reader_.refuse("human", "no such key for what is not drawn: its joints are moved");
     if (const TomlValue* table = reader_.table("swim")) human.swim = read_swim(*table);
     if (reader_.has("jacket_buttons")) human.jacket_buttons = reader_.file("jacket_buttons");
+    human.condition = read_condition(reader_);
+    human.hands = read_grip(reader_, "hands");
+    human.regulator = read_regulator(reader_);
     std::vector<Key> recorded;
     if (human.swim && !human.swim->motion.empty()) recorded.push_back("body");
     if (!human.jacket_buttons.empty()) recorded.push_back("buttons");

@@ -106,6 +106,32 @@ struct GasSupply {
   static void fields(auto&& field, auto& self) { field("tank", self.tank); }
 };
 
+// The regulators of a diver whose scene names them, in place of what the autopilot and the scene
+// would do.
+enum class SupplyChoice : std::uint64_t { kByItself, kOwn, kDonor };
+enum class FlowChoice : std::uint64_t { kByScene, kFlows, kHolds };
+struct RegulatorUse {
+  SupplyChoice supply = SupplyChoice::kByItself;  // kDonor: as far as the hose reaches
+  FlowChoice flow = FlowChoice::kByScene;         // kFlows: of the tank that is breathed from
+
+  static void fields(auto&& field, auto& self) {
+    field("supply", self.supply);
+    field("flow", self.flow);
+  }
+};
+
+// A vehicle's gripper or a diver's hands, where the scene names them.
+enum class GripChoice : std::uint64_t {
+  kByItself,  // a gripper keeps what it has; hands take what a gripper holds out
+  kOpen,
+  kClose,  // holds what comes into reach
+};
+struct GripUse {
+  GripChoice choice = GripChoice::kByItself;
+
+  static void fields(auto&& field, auto& self) { field("choice", self.choice); }
+};
+
 // Inputs of a vehicle.
 
 // Body axes, N and N m, as far as the thrusters have room for it. Depth and heading are held while
@@ -322,6 +348,80 @@ struct ComputerReading {
     field("cns_percent", self.cns_percent);
     field("gas", self.gas);
     field("alarm", self.alarm);
+  }
+};
+
+// The condition of a diver whose scene names it (diver/condition.hpp). A model, not a measurement.
+struct ConditionReading {
+  double alveolar_mmhg = 0.0, saturation = 0.0;  // of oxygen
+  // Share of the time of useful consciousness that has passed; of the dose of oxygen that this
+  // diver bears; of people who had convulsed by that dose.
+  double hypoxia = 0.0, oxygen = 0.0, oxygen_risk = 0.0;
+  double co2_mmhg = 0.0, narcotic_depth_m = 0.0;
+  double core_c = 0.0, skin_c = 0.0, shiver_w = 0.0;
+  double slowing = 1.0, strength = 1.0;  // times as long, share of the work
+  std::uint64_t lost = 0;                // diver::kHypoxia, ...: takes consciousness away; 0: awake
+  double lost_s = 0.0;
+
+  static void fields(auto&& field, auto& self) {
+    field("alveolar_mmhg", self.alveolar_mmhg);
+    field("saturation", self.saturation);
+    field("hypoxia", self.hypoxia);
+    field("oxygen", self.oxygen);
+    field("oxygen_risk", self.oxygen_risk);
+    field("co2_mmhg", self.co2_mmhg);
+    field("narcotic_depth_m", self.narcotic_depth_m);
+    field("core_c", self.core_c);
+    field("skin_c", self.skin_c);
+    field("shiver_w", self.shiver_w);
+    field("slowing", self.slowing);
+    field("strength", self.strength);
+    field("lost", self.lost);
+    field("lost_s", self.lost_s);
+  }
+};
+
+// A gripper or a hand.
+struct GripReading {
+  std::uint64_t held = 0;   // number of the object among those that move without physics of their
+                            // own, from 1 on; 0: nothing
+  Vec3 position_m{0.0};     // of the grip
+  Vec3 velocity_m_s{0.0};   // over ground
+  double load_n = 0.0;      // that what it holds pulls with
+  double nearest_m = -1.0;  // from the grip to the nearest thing
+  std::uint64_t grabs = 0, drops = 0;  // so far; a thing taken over is no drop
+
+  static void fields(auto&& field, auto& self) {
+    field("held", self.held);
+    field("position_m", self.position_m);
+    field("velocity_m_s", self.velocity_m_s);
+    field("load_n", self.load_n);
+    field("nearest_m", self.nearest_m);
+    field("grabs", self.grabs);
+    field("drops", self.drops);
+  }
+};
+
+// What a diver breathes from, where the scene names regulators. Litres at 1 bar.
+struct SupplyReading {
+  std::uint64_t donor = 0;   // number of the diver whose gas it is, from 1 on; 0: its own
+  std::uint64_t fed = 1;     // 0: nothing comes
+  double breathed_pa = 0.0;  // in the tank that is breathed from
+  double donor_m = -1.0;     // between both mouths; -1: no donor
+  double taken_l = 0.0;      // from the donor, so far
+  double blown_l = 0.0;      // off by a free flow, so far
+  double flow_l_min = 0.0;   // of it, now
+  std::uint64_t torn = 0;    // how often the hose was too short
+
+  static void fields(auto&& field, auto& self) {
+    field("donor", self.donor);
+    field("fed", self.fed);
+    field("breathed_pa", self.breathed_pa);
+    field("donor_m", self.donor_m);
+    field("taken_l", self.taken_l);
+    field("blown_l", self.blown_l);
+    field("flow_l_min", self.flow_l_min);
+    field("torn", self.torn);
   }
 };
 

@@ -14,7 +14,8 @@ constexpr std::array<std::string_view, kPayloadKinds> kKindNames{
     "joints", "hands",     "hand_poses", "head",     "gaze",     "buttons",   "breath",
     "heart",  "gas",       "wrench",     "setpoint", "velocity", "thrusters", "fault",
     "pose",   "event",     "imu",        "dvl",      "pressure", "compass",   "altimeter",
-    "usbl",   "collision", "motion",     "computer", "modem",    "send"};
+    "usbl",   "collision", "motion",     "computer", "modem",    "send",      "condition",
+    "supply", "regulator", "gripper",    "grip"};
 
 template <std::size_t... index>
 Payload make_payload(std::size_t kind, std::index_sequence<index...>) {

@@ -41,7 +41,8 @@ using Payload =
                  GasSupply, VehicleWrench, VehicleSetpoint, VehicleVelocity, VehicleThrusters,
                  ThrusterFault, ObjectPose, Event, rov::ImuReading, rov::DvlReading,
                  rov::PressureReading, CompassReading, rov::AltimeterReading, rov::UsblReading,
-                 CollisionReading, DiverMotion, ComputerReading, ModemReading, ModemSend>;
+                 CollisionReading, DiverMotion, ComputerReading, ModemReading, ModemSend,
+                 ConditionReading, SupplyReading, RegulatorUse, GripReading, GripUse>;
 
 enum class PayloadKind : std::uint32_t {
   kBodyJoints,
@@ -71,15 +72,21 @@ enum class PayloadKind : std::uint32_t {
   kComputer,
   kModem,
   kSend,
+  kCondition,
+  kSupply,
+  kRegulator,
+  kGripper,
+  kGrip,
 };
 inline constexpr std::size_t kPayloadKinds = std::variant_size_v<Payload>;
-static_assert(kPayloadKinds == static_cast<std::size_t>(PayloadKind::kSend) + 1);
+static_assert(kPayloadKinds == static_cast<std::size_t>(PayloadKind::kGrip) + 1);
 
 // The last part of a stream's name: "joints", "imu".
 std::string_view name_of(PayloadKind kind);
 // Whether samples of the kind are inputs; the others leave.
 constexpr bool enters(PayloadKind kind) {
-  return kind <= PayloadKind::kEvent || kind == PayloadKind::kSend;
+  return kind <= PayloadKind::kEvent || kind == PayloadKind::kSend ||
+         kind == PayloadKind::kRegulator || kind == PayloadKind::kGrip;
 }
 
 struct Sample {

@@ -34,6 +34,18 @@ std::string_view words_of(PayloadKind kind) {
     case PayloadKind::kModem:
       return "event: 0 sent, 1 refused, 2 received, lost: 3 too weak, 4 noisy, 5 collided, 6 was "
              "sending; message_kind: 1, 2 of ranging";
+    case PayloadKind::kRegulator:
+      return "supply: 0 by itself, 1 own tanks, 2 the donor's; flow: 0 by the scene, 1 blows, 2 "
+             "holds";
+    case PayloadKind::kCondition:
+      return "a model of hypoxia, carbon dioxide, oxygen, narcosis, cold; lost: their bits, 0 "
+             "awake";
+    case PayloadKind::kSupply:
+      return "what is breathed; donor: a diver's number from 1 on, 0 its own; litres at 1 bar";
+    case PayloadKind::kGrip:
+      return "choice: 0 by itself, 1 open, 2 close";
+    case PayloadKind::kGripper:
+      return "held: an object's number from 1 on, 0 nothing; place, load, nearest thing";
     case PayloadKind::kPressure:
       return "absolute pressure, and the depth that the sensor makes of it";
     case PayloadKind::kCompass:

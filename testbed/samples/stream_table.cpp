@@ -18,17 +18,19 @@ void StreamTable::add(OwnerSort sort, std::uint32_t owner, const std::string& na
   }
 }
 
-void StreamTable::add_diver(const std::string& name, ModemSort modem) {
+void StreamTable::add_diver(const std::string& name, ModemSort modem,
+                            const std::vector<PayloadKind>& named) {
   using enum PayloadKind;
   const auto owner = static_cast<std::uint32_t>(first_[0].size());
-  add(OwnerSort::kDiver, owner, name,
-      {kBodyJoints, kHandJoints, kHandPoses, kHeadPose, kGaze, kButtons, kBreath, kHeart, kGas,
-       kEvent, kMotion, kComputer, kCollision},
-      modem);
+  std::vector<PayloadKind> kinds{kBodyJoints, kHandJoints, kHandPoses, kHeadPose, kGaze,
+                                 kButtons,    kBreath,     kHeart,     kGas,      kEvent,
+                                 kMotion,     kComputer,   kCollision};
+  kinds.insert(kinds.end(), named.begin(), named.end());
+  add(OwnerSort::kDiver, owner, name, std::move(kinds), modem);
 }
 
 void StreamTable::add_vehicle(const std::string& name, const rov::SensorSet& sensors,
-                              ModemSort modem) {
+                              ModemSort modem, const std::vector<PayloadKind>& named) {
   using enum PayloadKind;
   std::vector<PayloadKind> kinds{kWrench, kThrusters, kSetpoint, kVelocity,
                                  kFault,  kEvent,     kCollision};
@@ -38,6 +40,7 @@ void StreamTable::add_vehicle(const std::string& name, const rov::SensorSet& sen
   if (sensors.compass) kinds.push_back(kCompass);
   if (sensors.altimeter) kinds.push_back(kAltimeter);
   if (sensors.usbl) kinds.push_back(kUsbl);
+  kinds.insert(kinds.end(), named.begin(), named.end());
   add(OwnerSort::kVehicle, static_cast<std::uint32_t>(first_[1].size()), name, kinds, modem);
 }
 

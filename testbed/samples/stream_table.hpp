@@ -28,10 +28,12 @@ struct Stream {
 class StreamTable {
  public:
   // Streams of the scene's next diver: inputs, motion, dive computer, collisions, events.
-  void add_diver(const std::string& name, ModemSort modem = ModemSort::kNone);
+  // named: further kinds, of what the scene names.
+  void add_diver(const std::string& name, ModemSort modem = ModemSort::kNone,
+                 const std::vector<PayloadKind>& named = {});
   // Streams of its next vehicle: inputs, the sensors that it has, collisions, events.
   void add_vehicle(const std::string& name, const rov::SensorSet& sensors,
-                   ModemSort modem = ModemSort::kNone);
+                   ModemSort modem = ModemSort::kNone, const std::vector<PayloadKind>& named = {});
   // Streams of its next object that devices move: pose, events; limbs: joints.
   void add_object(const std::string& name, ModemSort modem = ModemSort::kNone, bool limbs = false);
 

@@ -55,7 +55,8 @@ diver::GazeState gaze_ned(const Gaze& gaze) {
 
 // The swimmer, a recording, or the limbs' posture as it is.
 void move_body(const PhysicsHuman& human, const DiverInputs& inputs, Authority authority,
-               double now_s, double dt_s, HumanPhysics& state, diver::HumanInputs& acting) {
+               double now_s, double dt_s, const Ability& able, HumanPhysics& state,
+               diver::HumanInputs& acting) {
   if (authority == Authority::kLive) {
     acting.joints = inputs.body.joints;
     acting.other_power_w = inputs.body.other_power_w;
@@ -63,16 +64,20 @@ void move_body(const PhysicsHuman& human, const DiverInputs& inputs, Authority a
     acting.joints = human.recording->at(now_s, human.repeat);
   } else if (authority == Authority::kNobody) {
     acting.joints = state.human.held.joints;
+  } else if (!able.conscious) {
+    state.swimmer = {};  // limp: limbs straight, no button, breath by itself
   } else {
-    diver::swim(human.body, human.file.swimmer, swim_goal(human, state), state.human, state.swimmer,
-                dt_s, acting);
+    diver::SwimGoal goal = swim_goal(human, state);
+    goal.speed_m_s *= able.strength;
+    diver::swim(human.body, human.file.swimmer, goal, state.human, state.swimmer, dt_s, acting);
   }
 }
 
 }  // namespace
 
 diver::HumanInputs acting_inputs(const PhysicsHuman& human, const DiverInputs& inputs,
-                                 std::uint64_t step, double dt_s, HumanPhysics& state) {
+                                 std::uint64_t step, double dt_s, const Ability& able,
+                                 HumanPhysics& state) {
   for (std::size_t i = 0; i < kDiverGroups; ++i)
     state.groups[i] = next_group(state.groups[i], inputs.control[i], step, dt_s);
   const auto authority = [&](DiverGroup group) {
@@ -83,7 +88,8 @@ diver::HumanInputs acting_inputs(const PhysicsHuman& human, const DiverInputs& i
   const Quat straight(1.0, 0.0, 0.0, 0.0);
 
   diver::HumanInputs out;
-  move_body(human, inputs, authority(DiverGroup::kBody), now_s, dt_s, state, out);
+  move_body(human, inputs, authority(DiverGroup::kBody), now_s, dt_s, able, state, out);
+  out.other_power_w += diver::work_of_heat_w(able.shiver_w);
   const bool hands = live(DiverGroup::kHands), head = live(DiverGroup::kHead);
   if (authority(DiverGroup::kHands) == Authority::kNobody)
     for (const diver::Segment hand : {diver::kLeftHand, diver::kRightHand})
@@ -91,6 +97,16 @@ diver::HumanInputs acting_inputs(const PhysicsHuman& human, const DiverInputs& i
   if (authority(DiverGroup::kHead) == Authority::kNobody)
     out.joints[diver::joint_of(diver::kHead)] = straight;
   if (hands || head) follow_tracking(human, inputs, head, hands, state.human, out.joints);
+
+  if (able.hand_to_m && able.conscious && !hands &&
+      authority(DiverGroup::kHands) == Authority::kAutopilot) {
+    // As the arm lies, but the wrist there.
+    const diver::Posture posture = diver::posture_of(human.body, out.joints, {});
+    diver::ReachTargets targets;
+    targets.hands[1] = diver::body_from_hand(posture, true);
+    targets.hands[1]->position_m = place_in_body(state.human, {*able.hand_to_m, {}});
+    out.joints = diver::reach(human.body, out.joints, targets);
+  }
 
   const Authority buttons = authority(DiverGroup::kButtons);
   if (buttons == Authority::kLive)
@@ -108,6 +124,7 @@ diver::HumanInputs acting_inputs(const PhysicsHuman& human, const DiverInputs& i
   } else if (authority(DiverGroup::kBreath) == Authority::kNobody) {
     out.breath_bias_m3 = 0.0;
   }
+  if (able.holds_breath) out.hold_breath = 1;
   if (live(DiverGroup::kHeart)) out.instruments.heart = inputs.heart.state;
   if (live(DiverGroup::kGaze)) out.instruments.gaze = gaze_ned(inputs.gaze);
 

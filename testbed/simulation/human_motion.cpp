@@ -72,14 +72,15 @@ diver::SwimGoal swim_goal(const PhysicsHuman& human, const HumanPhysics& state) 
 
 HumanStep free_human(const PhysicsHuman& human, const DiverInputs& inputs,
                      const diver::WaterFlow& water, std::uint64_t step, double dt_s,
-                     HumanPhysics& state) {
+                     const Ability& able, diver::BorrowedTank* borrowed, HumanPhysics& state) {
   follow_plan(human, state);
-  diver::HumanInputs acting = acting_inputs(human, inputs, step, dt_s, state);
+  diver::HumanInputs acting = acting_inputs(human, inputs, step, dt_s, able, state);
   acting.current_ned_m_s = water.current_m_s;
   acting.current_change_ned_m_s2 = water.change_m_s2;
   acting.water_acceleration_ned_m_s2 = water.acceleration_m_s2;
   const diver::RootState before = state.human.root;
-  state.human = diver::step(human.body, state.human, acting, dt_s);
+  state.human =
+      diver::step(human.body, state.human, acting, dt_s, diver::kLongestSubstep_s, borrowed);
   const diver::RootState& after = state.human.root;
   const Mat6 mass = diver::matrix_of(
       diver::momentum_of(human.body, diver::posture_of(human.body, state.human.limbs.rotation, {}),
@@ -114,8 +115,8 @@ bool part_humans(const PhysicsHuman& a, HumanStep& moving_a, const PhysicsHuman&
 }
 
 void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const HumanStep& moving,
-               bool parted, std::uint64_t step, double dt_s, sim::ContactMemory& memory,
-               HumanPhysics& state) {
+               bool parted, std::uint64_t step, double dt_s, const Ability& able,
+               sim::ContactMemory& memory, HumanPhysics& state) {
   sim::MotionReport report;
   const sim::BodyMotion moved = sim::move_body(solid, human.shape, moving.inverse_mass,
                                                moving.before, moving.free, dt_s, memory, &report);
@@ -141,9 +142,12 @@ void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const H
   computer =
       human.computer->step(computer, {depth_m, known ? tank : computer.last.gas, unfed ? 0U : 1U},
                            diver::kComputerSample_s);
-  state.tank = diver::step_gas_switch(human.file.gas_switching, human.computer->settings().gases,
-                                      human.body, state.human.life.tanks, computer, tank, depth_m,
-                                      sink_m_s, diver::kComputerSample_s, state.gas_switch);
+  if (!able.conscious) return;  // who reaches for nothing
+  diver::GasSwitching switching = human.file.gas_switching;
+  switching.reaction_s = std::min(switching.reaction_s * able.slowing, diver::kMostReaction_s);
+  state.tank = diver::step_gas_switch(switching, human.computer->settings().gases, human.body,
+                                      state.human.life.tanks, computer, tank, depth_m, sink_m_s,
+                                      diver::kComputerSample_s, state.gas_switch);
 }
 
 Pose drawn_pose(const HumanPhysics& state) {

@@ -5,6 +5,7 @@
 
 #include "diver/frames.hpp"
 #include "engine/core/files.hpp"
+#include "testbed/simulation/diver_condition.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -118,6 +119,14 @@ Result<PhysicsHuman> physics_human(const scene::Scene& scene, std::size_t index)
                        scene.path, object.name, object.human->file.string());
     NERITIC_TRY(const std::string text, read_text(path));
     NERITIC_TRY(human.buttons, diver::read_button_recording(text, path.string()));
+  }
+  if (object.human->condition)
+    human.condition = physics_condition(*object.human->condition, human.file);
+  if (object.human->regulator) {
+    auto regulator = physics_regulator(*object.human->regulator, human.body);
+    if (!regulator.ok())
+      return bad_input("{}: {}: {}", scene.path, object.name, regulator.error().message);
+    human.regulator = std::move(regulator).value();
   }
   set_shape(human);
   NERITIC_TRY_STATUS(find_nodes(scene, object, human));

@@ -28,6 +28,27 @@ struct DrawnJoints {
 // The first segment whose node the model lacks is `missing`; empty: it is a diver's model.
 DrawnJoints drawn_joints_of(const scene::Model& model, std::string_view& missing);
 
+// A diver's condition, or regulators, that the scene names (diver_condition.hpp).
+struct PhysicsCondition {
+  diver::ConditionSettings settings;
+  bool acts = true;
+  std::size_t place = 0;  // in PhysicsState::conditions()
+};
+struct PhysicsRegulator {
+  std::optional<std::size_t> donor;  // a diver
+  std::size_t donor_tank = 0;
+  double hose_m = 1.0, reaction_s = 5.0;
+  std::vector<scene::FreeFlow> free_flows;
+  std::size_t place = 0;  // in PhysicsState::regulators()
+};
+// What a diver can still do, as the condition has it.
+struct Ability {
+  bool conscious = true, holds_breath = false;
+  double slowing = 1.0, strength = 1.0;
+  double shiver_w = 0.0;
+  std::optional<Vec3> hand_to_m;  // where the right one reaches, in the world
+};
+
 // A diver of the scene, prepared.
 struct PhysicsHuman {
   std::string name;
@@ -50,6 +71,8 @@ struct PhysicsHuman {
   std::vector<int> nodes;
   double arms_spread_rad = 0.0, scale = 1.0;
   std::vector<Vec3> gear_scales;
+  std::optional<PhysicsCondition> condition;
+  std::optional<PhysicsRegulator> regulator;
   HumanPhysics start;
 };
 
@@ -71,11 +94,12 @@ struct HumanStep {
 // The inputs of each group's authority in this step; steps the groups and the swimmer. Without
 // currents.
 diver::HumanInputs acting_inputs(const PhysicsHuman& human, const DiverInputs& inputs,
-                                 std::uint64_t step, double dt_s, HumanPhysics& state);
-// dt_s later, as if the water were empty.
+                                 std::uint64_t step, double dt_s, const Ability& able,
+                                 HumanPhysics& state);
+// dt_s later, as if the water were empty. borrowed: breathed from in place of the own tanks.
 HumanStep free_human(const PhysicsHuman& human, const DiverInputs& inputs,
                      const diver::WaterFlow& water, std::uint64_t step, double dt_s,
-                     HumanPhysics& state);
+                     const Ability& able, diver::BorrowedTank* borrowed, HumanPhysics& state);
 // As pairs are solved.
 sim::PairBody pair_body(const PhysicsHuman& human, const HumanStep& moving);
 // Whether a diver touched a vehicle, or another diver: the free steps of both then part, by equal
@@ -86,8 +110,8 @@ bool part_humans(const PhysicsHuman& a, HumanStep& moving_a, const PhysicsHuman&
                  HumanStep& moving_b, double dt_s, sim::PairMemory& memory);
 // Along what is solid, and the dive computer's sample. parted: touched one that moves.
 void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const HumanStep& moving,
-               bool parted, std::uint64_t step, double dt_s, sim::ContactMemory& memory,
-               HumanPhysics& state);
+               bool parted, std::uint64_t step, double dt_s, const Ability& able,
+               sim::ContactMemory& memory, HumanPhysics& state);
 
 // The drawn diver: the pose of the model, and its nodes' rotations and scales (breath).
 Pose drawn_pose(const HumanPhysics& state);

@@ -38,7 +38,7 @@ Movers::Movers(const scene::Scene& scene)
     const scene::Object& object = scene.objects[i];
     if (object.dynamics) vehicle_of_object[i] = vehicles++;
     if (object.human) human_of_object[i] = humans++;
-    if (!object.inputs.empty()) tracked_of_object[i] = tracked++;
+    if (!object.inputs.empty() || object.thing) tracked_of_object[i] = tracked++;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "testbed/simulation/diver_condition.hpp"
 #include "testbed/simulation/human_readings.hpp"
 
 namespace neritic::testbed {
@@ -20,6 +21,9 @@ bool leaves(const Stream& stream) {
     case PayloadKind::kMotion:
     case PayloadKind::kComputer:
     case PayloadKind::kModem:
+    case PayloadKind::kCondition:
+    case PayloadKind::kSupply:
+    case PayloadKind::kGripper:
       return true;
     default:
       return false;
@@ -79,9 +83,10 @@ OutputSamples::Made OutputSamples::every(double period_s, std::uint64_t step) co
 
 OutputSamples::Made OutputSamples::made(const Stream& stream,
                                         const sim::Snapshot<PhysicsState>& snapshot) const {
-  if (stream.kind == PayloadKind::kMotion)
+  if (stream.kind == PayloadKind::kMotion || stream.kind == PayloadKind::kGripper)
     return every(std::max(1.0 / kDiverMotion_hz, world_.step_s()), snapshot.step);
-  if (stream.kind == PayloadKind::kComputer)
+  if (stream.kind == PayloadKind::kComputer || stream.kind == PayloadKind::kCondition ||
+      stream.kind == PayloadKind::kSupply)
     return every(std::max(diver::kComputerSample_s, world_.step_s()), snapshot.step);
   if (stream.kind == PayloadKind::kCollision) {
     const PhysicsState& state = snapshot.state;
@@ -131,10 +136,16 @@ Payload OutputSamples::payload(const Stream& stream, const PhysicsState& state) 
   if (const auto modem = ranging_of(stream)) return state.modem_tasks()[*modem].fix.value;
   if (stream.kind == PayloadKind::kCollision)
     return collisions_.find(stream.sort, stream.owner, state);
+  if (stream.kind == PayloadKind::kGripper)
+    return grip_reading(world_.things(), *world_.things().find(stream.sort, stream.owner),
+                        world_.humans(), state);
   if (stream.sort == OwnerSort::kDiver) {
     const PhysicsHuman& human = world_.humans()[stream.owner];
     const HumanPhysics& now = state.humans()[stream.owner];
     if (stream.kind == PayloadKind::kMotion) return motion_reading(human, now);
+    if (stream.kind == PayloadKind::kCondition) return condition_reading(human, state, now);
+    if (stream.kind == PayloadKind::kSupply)
+      return supply_reading(world_.humans(), stream.owner, state);
     return computer_reading(human, now);
   }
   return with_reading(stream.kind, *world_.readings(state, stream.owner),

@@ -23,14 +23,30 @@ struct ModemInputs {
   }
 };
 
-// The inputs of every vehicle, diver and object that devices move, and of every modem.
-class PhysicsInputs
-    : public sim::Block<VehicleInputs, DiverInputs, ObjectInputs, ModemInputs, LimbTrack> {
+// The newest word about a diver's regulators; it holds.
+struct RegulatorInputs {
+  RegulatorUse use;
+
+  static void fields(auto&& field, auto& self) { field("use", self.use); }
+};
+
+// The newest word about a grip; it holds.
+struct GripInputs {
+  GripUse use;
+
+  static void fields(auto&& field, auto& self) { field("use", self.use); }
+};
+
+// The inputs of every vehicle, diver and object that devices move, of every modem, and of the
+// regulators, grips and limbs that the scene names.
+class PhysicsInputs : public sim::Block<VehicleInputs, DiverInputs, ObjectInputs, ModemInputs,
+                                        RegulatorInputs, GripInputs, LimbTrack> {
  public:
   PhysicsInputs() = default;
   PhysicsInputs(std::size_t vehicles, std::size_t humans, std::size_t objects = 0,
-                std::size_t modems = 0, std::size_t limbs = 0)
-      : Block({vehicles, humans, objects, modems, limbs}) {}
+                std::size_t modems = 0, std::size_t regulators = 0, std::size_t grips = 0,
+                std::size_t limbs = 0)
+      : Block({vehicles, humans, objects, modems, regulators, grips, limbs}) {}
 
   std::span<VehicleInputs> vehicles() { return part<VehicleInputs>(); }
   std::span<const VehicleInputs> vehicles() const { return part<VehicleInputs>(); }
@@ -44,6 +60,12 @@ class PhysicsInputs
   std::span<LimbTrack> limbs() { return part<LimbTrack>(); }
   std::span<const LimbTrack> limbs() const { return part<LimbTrack>(); }
 
+  std::span<RegulatorInputs> regulators() { return part<RegulatorInputs>(); }
+  std::span<const RegulatorInputs> regulators() const { return part<RegulatorInputs>(); }
+
+  std::span<GripInputs> grips() { return part<GripInputs>(); }
+  std::span<const GripInputs> grips() const { return part<GripInputs>(); }
+
   static void fields(auto&& field, auto& self) {
     auto vehicles = self.vehicles();
     auto humans = self.humans();
@@ -54,6 +76,10 @@ class PhysicsInputs
     field("humans", humans);
     field("objects", objects);
     field("modems", modems);
+    auto regulators = self.regulators();
+    field("regulators", regulators);
+    auto grips = self.grips();
+    field("grips", grips);
     field("limbs", limbs);
   }
 };

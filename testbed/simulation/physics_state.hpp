@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "diver/condition.hpp"
 #include "diver/gas_switch.hpp"
 #include "diver/human_step.hpp"
 #include "diver/swimmer.hpp"
@@ -167,18 +168,67 @@ struct ModemTasks {
   }
 };
 
+// The regulators of a diver whose scene names them.
+struct RegulatorState {
+  std::uint64_t donor = 0;  // number of the diver whose gas is breathed, from 1 on; 0: its own
+  double wanted_s = 0.0;    // since it is wanted and in reach
+  double taken_moles = 0.0, blown_moles = 0.0;  // so far
+  double flow_moles_s = 0.0;                    // of a free flow, in the last step
+  std::uint64_t torn = 0;                       // how often the hose was too short
+
+  static void fields(auto&& field, auto& self) {
+    field("donor", self.donor);
+    field("wanted_s", self.wanted_s);
+    field("taken_moles", self.taken_moles);
+    field("blown_moles", self.blown_moles);
+    field("flow_moles_s", self.flow_moles_s);
+    field("torn", self.torn);
+  }
+};
+
+// A thing that is carried (things.hpp). Where it is: its ObjectState.
+struct ThingState {
+  std::uint64_t holder = 0;  // number of the grip that holds it, from 1 on; 0: it is free
+  std::uint64_t rests = 0;   // 1: in its rack, not yet grabbed
+  std::uint64_t handovers = 0;
+  Quat grip_from_thing{1.0, 0.0, 0.0, 0.0};
+
+  static void fields(auto&& field, auto& self) {
+    field("holder", self.holder);
+    field("rests", self.rests);
+    field("handovers", self.handovers);
+    field("grip_from_thing", self.grip_from_thing);
+  }
+};
+struct GripState {
+  std::uint64_t held = 0;  // number of the object that it holds, from 1 on; 0: none
+  double load_n = 0.0;     // in the last step
+  std::uint64_t grabs = 0, drops = 0;
+
+  static void fields(auto&& field, auto& self) {
+    field("held", self.held);
+    field("load_n", self.load_n);
+    field("grabs", self.grabs);
+    field("drops", self.drops);
+  }
+};
+
 // The state of a scene's physics: one block, sized once from the scene (PhysicsWorld::start()).
 class PhysicsState
     : public sim::Block<VehicleState, HumanPhysics, rov::SensorReadings, rov::NavigationState,
-                        ObjectState, sonar::ModemState, ModemTasks, LimbState> {
+                        ObjectState, sonar::ModemState, ModemTasks, diver::ConditionState,
+                        RegulatorState, ThingState, GripState, LimbState> {
  public:
   PhysicsState() = default;
   // sensing: vehicles that have sensors; navigating: those that fly on what they measure; objects:
-  // those that devices move; limbs: those of them with limbs.
+  // those that devices move; conditions, regulators: divers whose scene names them; limbs: objects
+  // with limbs.
   PhysicsState(std::size_t vehicles, std::size_t humans, std::size_t sensing,
                std::size_t navigating, std::size_t objects = 0, std::size_t modems = 0,
-               std::size_t limbs = 0)
-      : Block({vehicles, humans, sensing, navigating, objects, modems, modems, limbs}) {}
+               std::size_t conditions = 0, std::size_t regulators = 0, std::size_t things = 0,
+               std::size_t grips = 0, std::size_t limbs = 0)
+      : Block({vehicles, humans, sensing, navigating, objects, modems, modems, conditions,
+               regulators, things, grips, limbs}) {}
 
   std::span<VehicleState> vehicles() { return part<VehicleState>(); }
   std::span<const VehicleState> vehicles() const { return part<VehicleState>(); }
@@ -200,6 +250,18 @@ class PhysicsState
   std::span<LimbState> limbs() { return part<LimbState>(); }
   std::span<const LimbState> limbs() const { return part<LimbState>(); }
 
+  // For the divers whose condition the scene names: PhysicsHuman::condition finds a diver's.
+  std::span<diver::ConditionState> conditions() { return part<diver::ConditionState>(); }
+  std::span<const diver::ConditionState> conditions() const {
+    return part<diver::ConditionState>();
+  }
+  std::span<ThingState> things() { return part<ThingState>(); }
+  std::span<const ThingState> things() const { return part<ThingState>(); }
+  std::span<GripState> grips() { return part<GripState>(); }
+  std::span<const GripState> grips() const { return part<GripState>(); }
+  std::span<RegulatorState> regulators() { return part<RegulatorState>(); }
+  std::span<const RegulatorState> regulators() const { return part<RegulatorState>(); }
+
   static void fields(auto&& field, auto& self) {
     auto vehicles = self.vehicles();
     auto humans = self.humans();
@@ -216,12 +278,23 @@ class PhysicsState
     field("objects", objects);
     field("modems", modems);
     field("modem_tasks", modem_tasks);
+    auto conditions = self.conditions();
+    auto regulators = self.regulators();
+    field("conditions", conditions);
+    field("regulators", regulators);
+    auto things = self.things();
+    auto grips = self.grips();
+    field("things", things);
+    field("grips", grips);
     field("limbs", limbs);
   }
-  // The hash covers groups once a live source was asked for, and navigation, objects, modems and
-  // limbs where there are any.
+  // The hash covers groups once a live source was asked for, and navigation, objects, modems,
+  // conditions, regulators, things and limbs where there are any.
   std::span<const std::uint64_t> hashed_counts() const {
     const std::size_t kinds = !limbs().empty()        ? kKinds
+                              : !things().empty()     ? 11
+                              : !regulators().empty() ? 9
+                              : !conditions().empty() ? 8
                               : !modems().empty()     ? 7
                               : !objects().empty()    ? 5
                               : !navigation().empty() ? 4
@@ -246,11 +319,16 @@ class PhysicsState
     if (!navigation.empty()) field("navigation", navigation);
     auto limbs = self.limbs();
     if (!limbs.empty()) field("limbs", limbs);
-    if (self.modems().empty()) return;
     auto modems = self.modems();
     auto modem_tasks = self.modem_tasks();
-    field("modems", modems);
-    field("modem_tasks", modem_tasks);
+    if (!modems.empty()) field("modems", modems), field("modem_tasks", modem_tasks);
+    auto conditions = self.conditions();
+    auto regulators = self.regulators();
+    if (!conditions.empty()) field("conditions", conditions);
+    if (!regulators.empty()) field("regulators", regulators);
+    auto things = self.things();
+    auto grips = self.grips();
+    if (!things.empty()) field("things", things), field("grips", grips);
   }
 };
 

@@ -9,6 +9,7 @@
 
 #include "rov/frames.hpp"
 #include "testbed/simulation/physics_world.hpp"
+#include "testbed/simulation/wash.hpp"
 #include "testbed/simulation/water_along.hpp"
 
 namespace neritic::testbed {
@@ -93,9 +94,14 @@ constexpr std::size_t kRoomForContacts = 256;
 
 PhysicsState PhysicsWorld::start() const {
   PhysicsState state(vehicles_.size(), humans_.size(), sensing_, navigating_, objects_.size(),
-                     modems_.all().size(), limbs_);
+                     modems_.all().size(), conditions_, regulators_, things_.things().size(),
+                     things_.grips().size(), limbs_);
   for (std::size_t i = 0; i < vehicles_.size(); ++i) state.vehicles()[i].body = vehicles_[i].start;
-  for (std::size_t i = 0; i < humans_.size(); ++i) state.humans()[i] = humans_[i].start;
+  for (std::size_t i = 0; i < humans_.size(); ++i) {
+    state.humans()[i] = humans_[i].start;
+    start_condition(humans_[i], state, humans_[i].start);
+  }
+  things_.start(state);
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     sense(i, {}, -1.0, 0.0, state);
     start_navigation(i, state);
@@ -122,6 +128,14 @@ void PhysicsWorld::apply(PhysicsInputs& inputs, const Sample& sample, std::uint6
   if (const ModemSend* message = std::get_if<ModemSend>(&sample.payload)) {
     ModemInputs& modem = inputs.modems()[*modems_.find(stream.sort, stream.owner)];
     modem.queue[modem.asked++ % ModemInputs::kQueued] = *message;
+    return;
+  }
+  if (const GripUse* use = std::get_if<GripUse>(&sample.payload)) {
+    inputs.grips()[*things_.find(stream.sort, stream.owner)].use = *use;
+    return;
+  }
+  if (const RegulatorUse* use = std::get_if<RegulatorUse>(&sample.payload)) {
+    inputs.regulators()[humans_[stream.owner].regulator->place].use = *use;
     return;
   }
   if (stream.sort == OwnerSort::kDiver)
@@ -156,6 +170,7 @@ PhysicsState PhysicsWorld::step(const PhysicsState& before, const PhysicsInputs&
 StepScratch PhysicsWorld::scratch(unsigned threads) const {
   StepScratch scratch{std::vector<VehicleScratch>(vehicles_.size()),
                       std::vector<HumanScratch>(humans_.size()),
+                      std::vector<Vec3>(things_.things().size(), Vec3(0.0)),
                       {},
                       {},
                       std::vector<sim::ContactMemory>(threads),
@@ -178,16 +193,54 @@ void PhysicsWorld::step(const PhysicsState& before, const PhysicsInputs& inputs,
       after.limbs()[*k] = next_limbs(before.limbs()[*k], inputs.limbs()[*k], after.objects()[i],
                                      inputs.objects()[i].control.front().hold_s, time);
   }
+  if (things_.any()) things_.choose(humans_, inputs, before, after);
   // Each writes its own part of scratch and after, and reads before. Divers, which cost more, come
   // first: no thread is left with one at the end.
   scratch.workers.run(humans + vehicles, [&](std::size_t i, unsigned thread) {
     i < humans ? begin_human(call, i) : begin_vehicle(call, i - humans, thread);
   });
   if (vehicles + humans > 1) part_all(call);
+  if (things_.any()) pull_all(call);
   scratch.workers.run(humans + vehicles, [&](std::size_t i, unsigned thread) {
     i < humans ? finish_human(call, i, thread) : finish_vehicle(call, i - humans, thread);
   });
+  if (things_.any())
+    things_.finish(humans_, solid_, scratch.thing_currents_m_s, water_kg_m3_, time.step_s,
+                   scratch.contacts.front(), after);
+  if (regulators_ > 0)
+    for (std::size_t k = 0; k < humans; ++k)
+      settle_gas(humans_, k, scratch.humans[k].taken_moles, after);
   if (!modems_.all().empty()) step_modems(call);
+}
+
+// What is held pulls at its holder, thing by thing.
+void PhysicsWorld::pull_all(const StepCall& call) const {
+  for (std::size_t i = 0; i < things_.things().size(); ++i) {
+    const ObjectState& object = call.after.objects()[things_.things()[i].object];
+    Vec3& current_m_s = call.scratch.thing_currents_m_s[i];
+    const Vec3 at_ned_m = rov::ned_from_world(object.motion.pose.position_m);
+    current_m_s = rov::world_from_ned(current_ned_m_s(at_ned_m, call.time.time_s()));
+    if (washes_)
+      current_m_s +=
+          rov::world_from_ned(wash_ned_m_s(vehicles_, call.before, at_ned_m, water_kg_m3_));
+    const std::uint64_t holder = call.after.things()[i].holder;
+    if (holder == 0) continue;
+    const PhysicsGrip& grip = things_.grips()[holder - 1];
+    const auto pull = [&](const sim::InverseMass& inverse_mass, sim::BodyMotion& free) {
+      things_.pull(i, humans_, {inverse_mass, free}, current_m_s, water_kg_m3_, call.time.step_s,
+                   call.after);
+    };
+    if (grip.sort == OwnerSort::kVehicle) {
+      VehicleScratch& own = call.scratch.vehicles[grip.owner];
+      sim::PairBody body = pair_body(whole_step(call, grip.owner), own.free);
+      pull(body.inverse_mass, body.free);
+      set_motion(body.free, own.free);
+      own.pulled = true;
+    } else {
+      HumanStep& moving = call.scratch.humans[grip.owner].moving;
+      pull(moving.inverse_mass, moving.free);
+    }
+  }
 }
 
 void PhysicsWorld::step_modems(const StepCall& call) const {
@@ -223,7 +276,7 @@ void PhysicsWorld::begin_vehicle(const StepCall& call, std::size_t i, unsigned t
   VehicleScratch& own = call.scratch.vehicles[i];
   VehicleState& state = call.after.vehicles()[i];
   const VehicleInputs& inputs = call.inputs.vehicles()[i];
-  own.parted = false;
+  own.parted = own.pulled = false;
   own.contact = {};
   for (std::size_t k = 0; k < kVehicleGroups; ++k)
     state.groups[k] =
@@ -252,12 +305,26 @@ void PhysicsWorld::begin_part(const StepCall& call, std::size_t i) const {
 
 void PhysicsWorld::begin_human(const StepCall& call, std::size_t k) const {
   const diver::RootState& root = call.before.humans()[k].human.root;
-  const diver::WaterFlow water =
+  diver::WaterFlow water =
       water_along(current_, root.position_ned_m, root.attitude * root.velocity.linear(),
                   call.time.time_s(), call.time.step_s);
-  call.scratch.humans[k] = {free_human(humans_[k], call.inputs.humans()[k], water, call.time.step,
-                                       call.time.step_s, call.after.humans()[k]),
-                            false};
+  if (washes_)
+    water.current_m_s += wash_on_diver_ned_m_s(vehicles_, humans_[k], call.before.humans()[k],
+                                               call.before, water_kg_m3_);
+  const PhysicsHuman& human = humans_[k];
+  Ability able = ability_of(human, call.before);
+  if (things_.any())
+    able.hand_to_m = things_.reaches_for_m(static_cast<std::uint32_t>(k), humans_, call.before);
+  HumanPhysics& after = call.after.humans()[k];
+  auto borrowed = borrow(humans_, k, able, call.inputs, call.before, call.time.step_s, call.after);
+  HumanScratch& own = call.scratch.humans[k];
+  own = {free_human(human, call.inputs.humans()[k], water, call.time.step, call.time.step_s, able,
+                    borrowed ? &*borrowed : nullptr, after),
+         false, borrowed ? borrowed->taken_moles : 0.0};
+  if (human.regulator) blow_off(human, call.inputs, call.time, call.after, after);
+  if (human.condition)
+    step_condition(human, borrowed ? &borrowed->place.mix : nullptr, call.time.step_s, call.after,
+                   after);
 }
 
 // Pairs that meet part, in a fixed order.
@@ -315,10 +382,10 @@ void PhysicsWorld::end_part(const StepCall& call, std::size_t i, unsigned thread
   VehicleState& state = call.after.vehicles()[i];
   const VehicleStep step = part_step(call, i);
   ContactReport report;
-  state.body =
-      step_among(solid_, step, own.free, own.parted, call.scratch.contacts[thread], &report);
-  if (own.parted) {
-    report.motion.touched = true;
+  state.body = step_among(solid_, step, own.free, own.parted || own.pulled,
+                          call.scratch.contacts[thread], &report);
+  if (own.parted) report.motion.touched = true;
+  if (own.parted || own.pulled) {
     report.change_ned = report.change_ned + velocity_ned(own.free) - own.alone_ned;
   }
   const double to_s = time_at(call.time, own.part.to);
@@ -335,7 +402,8 @@ void PhysicsWorld::finish_vehicle(const StepCall& call, std::size_t i, unsigned 
 void PhysicsWorld::finish_human(const StepCall& call, std::size_t k, unsigned thread) const {
   const HumanScratch& own = call.scratch.humans[k];
   end_human(humans_[k], solid_, own.moving, own.parted, call.time.step, call.time.step_s,
-            call.scratch.contacts[thread], call.after.humans()[k]);
+            ability_of(humans_[k], call.before), call.scratch.contacts[thread],
+            call.after.humans()[k]);
 }
 
 // The samples of the vehicle's sensors that are due in (from_s, to_s], of the state at to_s, whose

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "engine/core/text.hpp"
 #include "rov/frames.hpp"
 #include "rov/step_choice.hpp"
 #include "testbed/simulation/scene_hash.hpp"
@@ -59,7 +60,7 @@ Result<sim::Current> current_of(const scene::Current& current) {
 
 bool PhysicsWorld::needed(const scene::Scene& scene) {
   for (const scene::Object& object : scene.objects)
-    if (object.dynamics || object.human || !object.inputs.empty()) return true;
+    if (object.dynamics || object.human || object.thing || !object.inputs.empty()) return true;
   return false;
 }
 
@@ -76,8 +77,11 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     if (scene.objects[i].dynamics) NERITIC_TRY_STATUS(world->add_vehicle(scene, i));
     if (scene.objects[i].human) NERITIC_TRY_STATUS(world->add_human(scene, i));
-    if (!scene.objects[i].inputs.empty()) world->add_object(scene, i);
+    if (!scene.objects[i].inputs.empty() || scene.objects[i].thing) world->add_object(scene, i);
   }
+  NERITIC_TRY_STATUS(world->find_donors(scene));
+  NERITIC_TRY(world->things_, Things::create(scene, world->movers_));
+  world->water_kg_m3_ = scene.physics->water_kg_m3;
   NERITIC_TRY(world->modems_, Modems::create(scene, world->movers_));
   for (const PhysicsModem& modem : world->modems_.all())
     if (modem.sort == OwnerSort::kVehicle && modem.ranging &&
@@ -97,19 +101,26 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
 
 void PhysicsWorld::choose_inputs(const scene::Scene& scene) {
   start_inputs_ = PhysicsInputs(vehicles_.size(), humans_.size(), objects_.size(),
-                                modems_.all().size(), limbs_);
+                                modems_.all().size(), regulators_, things_.grips().size(), limbs_);
   const auto modem = [&](OwnerSort sort, std::size_t owner) {
     return modems_.sort_of(sort, static_cast<std::uint32_t>(owner));
   };
+  const auto grip_kinds = [&](OwnerSort sort, std::size_t owner) -> std::vector<PayloadKind> {
+    if (!things_.find(sort, static_cast<std::uint32_t>(owner))) return {};
+    return {PayloadKind::kGripper, PayloadKind::kGrip};
+  };
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     streams_.add_vehicle(vehicles_[i].name, vehicles_[i].file.sensors,
-                         modem(OwnerSort::kVehicle, i));
+                         modem(OwnerSort::kVehicle, i), grip_kinds(OwnerSort::kVehicle, i));
     start_inputs_.vehicles()[i] =
         chosen_inputs(scene.objects[vehicles_[i].object].dynamics->inputs, sources_);
   }
   for (std::size_t i = 0; i < humans_.size(); ++i) {
     const PhysicsHuman& human = humans_[i];
-    streams_.add_diver(human.name, modem(OwnerSort::kDiver, i));
+    std::vector<PayloadKind> named = grip_kinds(OwnerSort::kDiver, i);
+    if (human.condition) named.push_back(PayloadKind::kCondition);
+    if (human.regulator) named.insert(named.end(), {PayloadKind::kSupply, PayloadKind::kRegulator});
+    streams_.add_diver(human.name, modem(OwnerSort::kDiver, i), named);
     start_inputs_.humans()[i] =
         chosen_inputs(scene.objects[human.object].human->inputs, human.recording.has_value(),
                       human.buttons.has_value(), sources_);
@@ -145,6 +156,8 @@ Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index) {
   out.failed_thrusters = dynamics.failed_thrusters;
   if (dynamics.mission)
     out.mission.emplace(scene, *dynamics.mission, movers_, out.file.gains.period_s);
+  out.wash = dynamics.wash;
+  washes_ = washes_ || dynamics.wash;
   if (dynamics.tether_anchor_m)
     out.tether_anchor_ned_m = rov::ned_from_world(*dynamics.tether_anchor_m);
   const Pose at = scene.world_from(object.mount, 0.0);
@@ -165,6 +178,13 @@ Status PhysicsWorld::add_human(const scene::Scene& scene, std::size_t index) {
   const diver::RootState& root = human.start.human.root;
   NERITIC_TRY_STATUS(check_start(scene, human.name, human.shape,
                                  rov::world_pose(root.position_ned_m, root.attitude)));
+  if (human.condition) {
+    human.condition->place = conditions_++;
+    // Drawn for each diver in turn, unless the scene says it.
+    if (!scene.objects[index].human->condition->oxygen_tolerance)
+      human.condition->settings.oxygen_tolerance = drawn_tolerance(seed_, humans_.size());
+  }
+  if (human.regulator) human.regulator->place = regulators_++;
   humans_.push_back(std::move(human));
   return {};
 }
@@ -172,12 +192,35 @@ Status PhysicsWorld::add_human(const scene::Scene& scene, std::size_t index) {
 void PhysicsWorld::add_object(const scene::Scene& scene, std::size_t index) {
   const scene::Object& object = scene.objects[index];
   PhysicsObject out{.name = object.name, .object = index};
-  if (object.model >= 0 && object.copies.empty()) {
+  if (!object.inputs.empty() && object.model >= 0 && object.copies.empty()) {
     std::string_view missing;
     out.joints = drawn_joints_of(*scene.models[static_cast<std::size_t>(object.model)], missing);
     if (missing.empty()) out.limbs = limbs_++;
   }
   objects_.push_back(std::move(out));
+}
+
+// The donors, once all divers are known.
+Status PhysicsWorld::find_donors(const scene::Scene& scene) {
+  for (PhysicsHuman& human : humans_) {
+    if (!human.regulator) continue;
+    const std::string& name = scene.objects[human.object].human->regulator->donor;
+    if (name.empty()) continue;
+    std::string names;
+    for (std::size_t k = 0; k < humans_.size(); ++k) {
+      if (&humans_[k] == &human) continue;
+      names += (names.empty() ? "" : ", ") + humans_[k].name;
+      if (humans_[k].name == name) human.regulator->donor = k;
+    }
+    if (!human.regulator->donor)
+      return bad_input("{}: {}: regulator.donor: found '{}'; accepted: {}", scene.path, human.name,
+                       printable(name), names.empty() ? "another diver: there is none" : names);
+    const std::size_t tanks = humans_[*human.regulator->donor].body.tank_count;
+    if (human.regulator->donor_tank >= tanks)
+      return bad_input("{}: {}: regulator.donor_tank: found {}; accepted: below {}, {}'s tanks",
+                       scene.path, human.name, human.regulator->donor_tank, tanks, name);
+  }
+  return {};
 }
 
 Status PhysicsWorld::check_start(const scene::Scene& scene, const std::string& name,

@@ -13,11 +13,13 @@
 #include "engine/sim/workers.hpp"
 #include "rov/navigation.hpp"
 #include "testbed/simulation/body_step.hpp"
+#include "testbed/simulation/diver_condition.hpp"
 #include "testbed/simulation/human_world.hpp"
 #include "testbed/simulation/mission.hpp"
 #include "testbed/simulation/modems.hpp"
 #include "testbed/simulation/pair_finder.hpp"
 #include "testbed/simulation/saved_state.hpp"
+#include "testbed/simulation/things.hpp"
 #include "testbed/simulation/vehicle_kinds.hpp"
 
 namespace neritic::testbed {
@@ -38,6 +40,7 @@ struct PhysicsVehicle {
   std::uint64_t failed_thrusters = 0;  // at the start
   std::optional<MissionGuide> mission;
   Vec3 tether_anchor_ned_m{0.0};
+  std::optional<scene::Wash> wash;
   rov::State start;
   std::optional<std::size_t> readings;  // of PhysicsState::readings(); none: without sensors
   std::optional<VehicleNavigation> navigation;  // none: flies on its true state
@@ -61,15 +64,18 @@ struct VehicleScratch {
   rov::State free;      // after the part, as if the water were empty; changed by what it meets
   rov::Vec6 alone_ned;  // its velocity then, as if there were no other vehicle or diver
   bool parted = false;
+  bool pulled = false;    // by what it holds
   ContactReport contact;  // of the step so far
 };
 struct HumanScratch {
   HumanStep moving;
   bool parted = false;
+  double taken_moles = 0.0;  // of the donor's tank
 };
 struct StepScratch {
   std::vector<VehicleScratch> vehicles;
   std::vector<HumanScratch> humans;
+  std::vector<Vec3> thing_currents_m_s;
   PairFinder finder;
   sim::PairMemory pair;
   std::vector<sim::ContactMemory> contacts;  // of each thread
@@ -96,6 +102,7 @@ class PhysicsWorld {
   const std::vector<PhysicsHuman>& humans() const { return humans_; }
   const std::vector<PhysicsObject>& objects() const { return objects_; }
   const Modems& modems() const { return modems_; }
+  const Things& things() const { return things_; }
   const sim::StaticWorld& solid() const { return solid_; }
   std::uint64_t seed() const { return seed_; }
   double step_s() const { return step_s_; }
@@ -149,6 +156,7 @@ class PhysicsWorld {
   Status add_vehicle(const scene::Scene& scene, std::size_t object);
   Status add_human(const scene::Scene& scene, std::size_t object);
   void add_object(const scene::Scene& scene, std::size_t object);
+  Status find_donors(const scene::Scene& scene);
   void choose_inputs(const scene::Scene& scene);
   Status check_start(const scene::Scene& scene, const std::string& name,
                      const sim::BodyShape& shape, const Pose& start) const;
@@ -166,6 +174,7 @@ class PhysicsWorld {
   void finish_vehicle(const StepCall& call, std::size_t i, unsigned thread) const;
   void finish_human(const StepCall& call, std::size_t k, unsigned thread) const;
   void step_modems(const StepCall& call) const;
+  void pull_all(const StepCall& call) const;
   void start_navigation(std::size_t index, PhysicsState& state) const;
   void navigate(std::size_t index, double time_s, PhysicsState& state) const;
   rov::Inputs acting_on(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
@@ -181,13 +190,17 @@ class PhysicsWorld {
   std::vector<PhysicsVehicle> vehicles_;
   std::vector<PhysicsHuman> humans_;
   std::vector<PhysicsObject> objects_;
-  std::size_t sensing_ = 0;     // vehicles with sensors
-  std::size_t navigating_ = 0;  // those that fly on what they measure
-  std::size_t limbs_ = 0;       // objects with limbs
+  std::size_t sensing_ = 0;                      // vehicles with sensors
+  std::size_t navigating_ = 0;                   // those that fly on what they measure
+  std::size_t conditions_ = 0, regulators_ = 0;  // divers whose scene names them
+  std::size_t limbs_ = 0;                        // objects with limbs
   StreamTable streams_;
   SourceNames sources_;
   PhysicsInputs start_inputs_;
   Modems modems_;
+  Things things_;
+  double water_kg_m3_ = 1028.0;
+  bool washes_ = false;  // a vehicle names its wash
 };
 
 // How a vehicle with these sensors navigates, as the scene chooses; none: by its true state. An

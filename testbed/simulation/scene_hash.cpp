@@ -135,6 +135,7 @@ class SceneHash {
       for (const Mat4& copy : object.copies) matrix(copy);
     }
     if (!object.inputs.empty()) text("inputs"), add(object.inputs);
+    if (object.thing) add(*object.thing);
     if (object.dynamics) add(*object.dynamics);
     if (object.human) NERITIC_TRY_STATUS(add(*object.human));
     return {};
@@ -147,6 +148,8 @@ class SceneHash {
     add(dynamics.inputs);
     number(dynamics.tether_anchor_m.has_value());
     if (dynamics.tether_anchor_m) vec(*dynamics.tether_anchor_m);
+    if (dynamics.gripper) text("gripper"), add(*dynamics.gripper);
+    if (dynamics.wash) text("wash"), numbers(dynamics.wash->diameter_m, dynamics.wash->reach_m);
     number(dynamics.mission.has_value());
     if (dynamics.mission) add(*dynamics.mission);
   }
@@ -181,10 +184,37 @@ class SceneHash {
     add(m.target), add(m.between_a), add(m.between_b);
   }
 
+  void add(const scene::Thing& thing) {
+    text("thing");
+    numbers(thing.mass_kg, thing.volume_m3, thing.drag_area_m2);
+    number(thing.racked);
+  }
+  void add(const scene::Grip& grip) {
+    vec(grip.position_m);
+    numbers(grip.reach_m, grip.strength_n, grip.most_m_s);
+  }
+  void add(const scene::Condition& condition) {
+    text("condition");
+    number(condition.effects.size());
+    for (const std::string& effect : condition.effects) text(effect);
+    number(condition.acts);
+    numbers(condition.water_c, condition.fat_share, condition.oxygen_tolerance.value_or(-1e9));
+  }
+  void add(const scene::Regulator& regulator) {
+    text("regulator"), text(regulator.donor);
+    numbers(regulator.donor_tank, regulator.hose_m, regulator.reaction_s);
+    number(regulator.free_flows.size());
+    for (const scene::FreeFlow& flow : regulator.free_flows)
+      numbers(flow.at_s, flow.until_s, flow.tank, flow.area_m2);
+  }
+
   Status add(const scene::Human& human) {
     NERITIC_TRY_STATUS(file(human.file));
     NERITIC_TRY_STATUS(file(human.jacket_buttons));
     add(human.inputs);
+    if (human.condition) add(*human.condition);
+    if (human.regulator) add(*human.regulator);
+    if (human.hands) text("hands"), add(*human.hands);
     number(human.swim.has_value());
     if (!human.swim) return {};
     number(human.swim->waypoints_m.size());

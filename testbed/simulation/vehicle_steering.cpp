@@ -8,6 +8,7 @@
 #include "rov/thrust_priority.hpp"
 #include "testbed/simulation/physics_world.hpp"
 #include "testbed/simulation/surface.hpp"
+#include "testbed/simulation/wash.hpp"
 #include "testbed/simulation/water_along.hpp"
 
 namespace neritic::testbed {
@@ -117,6 +118,7 @@ rov::Inputs PhysicsWorld::acting_on(const PhysicsVehicle& vehicle, const Vehicle
   acting.tether_anchor_ned_m = vehicle.tether_anchor_ned_m;
   acting.failed_thrusters = failed_thrusters(vehicle, inputs, state);
   apply_surface(vehicle.vehicle, vehicle.kind.top_m, vehicle.kind.bottom_m, state.body, acting);
+  if (vehicle.wash) add_ground_effect(vehicle, rays(), state.body, acting);
   return acting;
 }
 

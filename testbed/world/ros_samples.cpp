@@ -319,6 +319,53 @@ void describe(Io& io, auto& p, const ModemReading*) {
   io.number("snr_db", p.snr_db);
 }
 template <class Io>
+void describe(Io& io, auto& p, const RegulatorUse*) {
+  io.choice("supply", p.supply, SupplyChoice::kDonor);
+  io.choice("flow", p.flow, FlowChoice::kHolds);
+}
+template <class Io>
+void describe(Io& io, auto& p, const GripUse*) {
+  io.choice("choice", p.choice, GripChoice::kClose);
+}
+template <class Io>
+void describe(Io& io, auto& p, const GripReading*) {
+  io.number("held", p.held);
+  io.vector("position", p.position_m, enu, world);
+  io.vector("velocity", p.velocity_m_s, enu, world);
+  io.number("load_n", p.load_n);
+  io.number("nearest_m", p.nearest_m);
+  io.number("grabs", p.grabs);
+  io.number("drops", p.drops);
+}
+template <class Io>
+void describe(Io& io, auto& p, const ConditionReading*) {
+  io.number("alveolar_mmhg", p.alveolar_mmhg);
+  io.number("saturation", p.saturation);
+  io.number("hypoxia", p.hypoxia);
+  io.number("oxygen", p.oxygen);
+  io.number("oxygen_risk", p.oxygen_risk);
+  io.number("co2_mmhg", p.co2_mmhg);
+  io.number("narcotic_depth_m", p.narcotic_depth_m);
+  io.number("core_c", p.core_c);
+  io.number("skin_c", p.skin_c);
+  io.number("shiver_w", p.shiver_w);
+  io.number("slowing", p.slowing);
+  io.number("strength", p.strength);
+  io.number("lost", p.lost);
+  io.number("lost_s", p.lost_s);
+}
+template <class Io>
+void describe(Io& io, auto& p, const SupplyReading*) {
+  io.number("donor", p.donor);
+  io.number("fed", p.fed);
+  io.number("breathed_pa", p.breathed_pa);
+  io.number("donor_m", p.donor_m);
+  io.number("taken_l", p.taken_l);
+  io.number("blown_l", p.blown_l);
+  io.number("flow_l_min", p.flow_l_min);
+  io.number("torn", p.torn);
+}
+template <class Io>
 void describe(Io& io, auto& p, const DiverMotion*) {
   pose(io, "position", "orientation", p.world_from_body);
   io.vector("linear_velocity", p.velocity_m_s, flu, flu);
@@ -387,6 +434,7 @@ std::string frame_of(PayloadKind kind, const std::string& owner) {
     case PayloadKind::kUsbl:
     case PayloadKind::kCompass:
     case PayloadKind::kCollision:
+    case PayloadKind::kGripper:
     case PayloadKind::kMotion:
     case PayloadKind::kSetpoint:
     case PayloadKind::kObjectPose:

@@ -166,6 +166,9 @@ class World {
   // Divers: buttons  inflate deflate dump; joints  15 quaternions; head  position, orientation,
   // placed; hands, gaze, breath, heart, gas: the fields of the stream of that name.
   // Objects: pose  x y z qx qy qz qw [vx vy vz wx wy wz].
+  // Divers with regulators: regulator  supply (0 by itself, 1 own tanks, 2 the donor's) and flow
+  // (0 by the scene, 1 blows off, 2 holds). Grippers and hands: grip  0 by itself, 1 open, 2 close.
+  // Both take no authority and hold until the next one.
   // Modems: send  the number of the modem that it is for (0: all), then 1 to 64 bytes; it takes no
   // authority, and what comes of it is read from AGENT/modem.
   // source: who commands, by name. kBadInput: what was found, what is accepted.

@@ -202,6 +202,36 @@ Status World::command(const std::string& name, const std::string& kind,
     return parts.push(source, world.streams().id(owner.sort, owner.owner, PayloadKind::kSend),
                       message, time_ns());
   }
+  if (kind == "grip") {
+    const bool diver = index >= vehicles;
+    const auto number = static_cast<std::uint32_t>(index - (diver ? vehicles : 0));
+    const OwnerSort by = diver ? OwnerSort::kDiver : OwnerSort::kVehicle;
+    if (index >= vehicles + humans || !world.things().find(by, number))
+      return refusal(where, "an agent without a gripper or hands",
+                     "one whose object has the table gripper or hands");
+    NERITIC_TRY_STATUS(check_count(where, values.size(), 1, 1));
+    if (values[0] != 0.0 && values[0] != 1.0 && values[0] != 2.0)
+      return refusal(where, fmt::format("{}", values[0]), "0, 1 or 2");
+    NERITIC_TRY(const SourceId source, parts.source(from));
+    return parts.push(source, world.streams().id(by, number, PayloadKind::kGrip),
+                      ros::read_values(PayloadKind::kGrip, values), time_ns());
+  }
+  if (kind == "regulator") {
+    if (index < vehicles || index >= vehicles + humans ||
+        !world.humans()[index - vehicles].regulator)
+      return refusal(where, "an agent without regulators",
+                     "a diver whose object has the table regulator");
+    NERITIC_TRY_STATUS(check_count(where, values.size(), 2, 2));
+    for (const double value : values)
+      if (value != 0.0 && value != 1.0 && value != 2.0)
+        return refusal(where, fmt::format("{}", value), "0, 1 or 2");
+    NERITIC_TRY(const SourceId source, parts.source(from));
+    return parts.push(
+        source,
+        world.streams().id(OwnerSort::kDiver, static_cast<std::uint32_t>(index - vehicles),
+                           PayloadKind::kRegulator),
+        ros::read_values(PayloadKind::kRegulator, values), time_ns());
+  }
   OwnerSort sort = OwnerSort::kVehicle;
   std::uint32_t owner = static_cast<std::uint32_t>(index);
   Said said;

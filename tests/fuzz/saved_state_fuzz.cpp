@@ -15,8 +15,11 @@ using namespace neritic;
 using namespace neritic::testbed;
 
 const StateFormat& format() {
-  static const StateFormat format{
-      7, 1.0 / 240.0, PhysicsState(2, 1, 1, 1, 1, 2), PhysicsInputs(2, 1, 1, 2), {"simulation"}};
+  static const StateFormat format{7,
+                                  1.0 / 240.0,
+                                  PhysicsState(2, 1, 1, 1, 1, 2, 1, 1, 1, 2, 1),
+                                  PhysicsInputs(2, 1, 1, 2, 1, 2, 1),
+                                  {"simulation"}};
   return format;
 }
 

@@ -147,8 +147,8 @@ TEST(PhysicsDeterminism, ARecordedDiveWithAPilotReplays) {
 }
 
 TEST(PhysicsDeterminism, TheStateNamesEveryByte) {
-  sim::check_fields_cover(PhysicsState(3, 2, 2, 2, 1, 2));
-  sim::check_fields_cover(PhysicsInputs(3, 2, 1, 2));
+  sim::check_fields_cover(PhysicsState(3, 2, 2, 2, 1, 2, 2, 1, 2, 3, 2));
+  sim::check_fields_cover(PhysicsInputs(3, 2, 1, 2, 2, 3, 2));
 }
 
 }  // namespace

@@ -1,0 +1,51 @@
+#include "engine/sim/grip.hpp"
+
+namespace neritic::sim {
+namespace {
+
+Mat3 cross_matrix(const Vec3& r) {
+  // Columns: [r]x e_i.
+  return {Vec3(0.0, r.z, -r.y), Vec3(-r.z, 0.0, r.x), Vec3(r.y, -r.x, 0.0)};
+}
+
+// A block of the inverse mass, row by row as it is stored.
+Mat3 block(const InverseMass& m, std::size_t row, std::size_t column) {
+  Mat3 out(0.0);
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      out[static_cast<int>(k)][static_cast<int>(i)] = m[6 * (row + i) + column + k];
+  return out;
+}
+
+}  // namespace
+
+Vec3 point_velocity(const BodyMotion& body, const Vec3& at_m) {
+  return body.world_from_body.rotation *
+         (body.velocity.linear + glm::cross(body.velocity.angular, at_m));
+}
+
+Vec3 grip_impulse(const InverseMass& inverse_mass, const BodyMotion& body, const Held& held) {
+  const Mat3 r = cross_matrix(held.at_m), rt = glm::transpose(r);
+  // [1, -r] M^-1 [1, -r]^T, and -r^T = r.
+  const Mat3 k = block(inverse_mass, 0, 0) + block(inverse_mass, 0, 3) * rt * -1.0 +
+                 r * -1.0 * block(inverse_mass, 3, 0) + r * block(inverse_mass, 3, 3) * rt +
+                 Mat3(1.0 / held.mass_kg);
+  const Vec3 apart = held.velocity_m_s - point_velocity(body, held.at_m);
+  const Quat& q = body.world_from_body.rotation;
+  return q * (glm::inverse(k) * (glm::conjugate(q) * apart));
+}
+
+void hold(const InverseMass& inverse_mass, const Vec3& impulse_n_s, double dt_s, BodyMotion& body,
+          Held& held) {
+  const Quat q = body.world_from_body.rotation;
+  const Vec3 own = glm::conjugate(q) * impulse_n_s, turn = glm::cross(held.at_m, own);
+  const Vec3 linear = block(inverse_mass, 0, 0) * own + block(inverse_mass, 0, 3) * turn;
+  const Vec3 angular = block(inverse_mass, 3, 0) * own + block(inverse_mass, 3, 3) * turn;
+  body.world_from_body = moved(body.world_from_body, {0.5 * linear, 0.5 * angular}, dt_s);
+  // Velocities stay those of the old axes turned along: seen from the body they keep their numbers.
+  body.velocity.linear += linear;
+  body.velocity.angular += angular;
+  held.velocity_m_s -= impulse_n_s / held.mass_kg;
+}
+
+}  // namespace neritic::sim
