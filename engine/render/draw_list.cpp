@@ -22,6 +22,7 @@ struct Seen {
   bool mirrored;
   bool hides_back_faces;
   double order_m;
+  const DrawnLarger* larger = nullptr;
 };
 
 // No length grows by more than this (the Frobenius norm bounds every stretch, sheared or not).
@@ -72,10 +73,15 @@ class DrawListBuilder {
         views_(views),
         options_(options),
         origin_(views.origin_m()),
+        larger_of_(options.least_drawn ? scene.objects.size() : 0),
         culling_(views) {}
 
   DrawList build() {
     out_.all_triangles = gpu_scene_.triangles();
+    if (options_.least_drawn) {
+      out_.larger = drawn_larger(scene_, gpu_scene_, state_, origin_, *options_.least_drawn);
+      for (const DrawnLarger& larger : out_.larger) larger_of_[larger.object] = &larger;
+    }
     for (std::uint32_t g = 0; g < gpu_scene_.groups().size(); ++g) add_group(g);
     std::stable_sort(out_.opaque.begin(), out_.opaque.end(),
                      [](const Draw& a, const Draw& b) { return a.order_m < b.order_m; });
@@ -134,7 +140,8 @@ class DrawListBuilder {
           kFloatError * (glm::length(Vec3(m[3])) +
                          stretch * (glm::length(primitive.center_m) + primitive.radius_m));
       // The rest shape bounds nothing that deforms: such are always drawn.
-      if (deformed == kNone &&
+      const DrawnLarger* larger = larger_of_.empty() ? nullptr : larger_of_[a.object];
+      if (deformed == kNone && !larger &&
           !any_view_sees(views_, center, primitive.radius_m * stretch + error_m))
         continue;
       // The Frobenius norm of a turn without scale is sqrt(3): near enough for an order.
@@ -142,7 +149,8 @@ class DrawListBuilder {
           blend ? center_m : nearness(center_m, primitive.radius_m * stretch / std::sqrt(3.0));
       const bool hides =
           options_.hide_back_faces && primitive.closed && all_eyes_outside(views_, primitive, m);
-      seen.push_back({&a, m, deformed, glm::determinant(glm::dmat3(m)) < 0.0, hides, order_m});
+      seen.push_back(
+          {&a, m, deformed, glm::determinant(glm::dmat3(m)) < 0.0, hides, order_m, larger});
     }
     return seen;
   }
@@ -154,7 +162,7 @@ class DrawListBuilder {
     bool joins = false;
     for (const Seen& s : alike) {
       const auto first_range = static_cast<std::uint32_t>(out_.ranges.size());
-      const bool part = clusters && add_visible_part(primitive, s);
+      const bool part = clusters && !s.larger && add_visible_part(primitive, s);
       if (part && out_.ranges.size() == first_range) continue;  // nothing of it is seen
       if (part || !joins) {
         if (!part) out_.ranges.push_back({primitive.first_index, primitive.index_count});
@@ -192,6 +200,12 @@ class DrawListBuilder {
     instance.label = scene_.objects[a.object].class_id | std::uint32_t{a.label} << 16;
     instance.deformed = seen.deformed;
     out_.instances.push_back(instance);
+    if (!out_.larger.empty()) {
+      shared::NextInstance drawn{};
+      set_rows(drawn, seen.larger ? seen.larger->drawn_from_true * seen.origin_from_primitive
+                                  : seen.origin_from_primitive);
+      out_.drawn_instances.push_back(drawn);
+    }
     if (!state_.motion) return;
     Mat4 next = world_from_appearance(
         scene_, state_.next_world_from_object[a.object], state_.next_poses[a.object], a,
@@ -208,6 +222,7 @@ class DrawListBuilder {
   const ViewSet& views_;
   const DrawListOptions options_;
   const Vec3 origin_;
+  std::vector<const DrawnLarger*> larger_of_;  // an object; empty: none is
   const ClusterCulling culling_;
   DrawList out_;
 };
