@@ -339,7 +339,7 @@ void main() {
       leaves = weight > 0.0;
     } else if (kWeighted != 0) power *= texelFetch(weights, ivec2(column, row), 0).r;
     if (kReflect != 0 || kLabels != 0 || kRecords != 0) label = texelFetch(label_image, hit.at, 0).xy;
-    if (kReflect != 0) power *= label.y < c.reflectivities ? reflectivity[label.y] : 1.0;
+    if (kReflect != 0) power *= label.y < c.reflectivities ? abs(reflectivity[label.y]) : 1.0;
     if (kGhost != 0) label.x = kSonarGhostClass;
     RowEcho e = RowEcho(min(power, kLargestPower), bin_at(heard_m), vec2(heard_m), heard_m, label.x);
     if (kFootprint != 0 && range_m > 0.0) e.ends_m = shared_ends(hit.ends_m * (heard_m / hit.range_m), heard_m);

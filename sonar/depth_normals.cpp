@@ -70,7 +70,7 @@ class Estimator {
         const double noise_m = noise(u, v);
         const double noise_px = noise_m * q * std::sqrt(in_.intrinsics.fx * in_.intrinsics.fy);
         const int w = half_width(noise_px);
-        const auto n = w == 0 ? from_neighbours(u, v) : from_plane(u, v, w, noise_m * q * q);
+        const auto n = w == 0 ? from_neighbours(u, v) : normal_of_plane(u, v, w, noise_m * q * q);
         if (!n) continue;
         std::copy_n(&(*n)[0], 3, &out.normals[3 * index(u, v)]);
         noises.push_back(noise_m);
@@ -82,6 +82,27 @@ class Estimator {
     out.estimate = {median(noises), std::atan(median(plain)), std::atan(median(errors)),
                     static_cast<int>(median(widths))};
     return out;
+  }
+
+  SmoothedDepth smooth(double accepted_m, std::vector<double>& depth) const {
+    std::vector<double> noises, left, widths;
+    for (std::int64_t v = 0; v < in_.height; ++v)
+      for (std::int64_t u = 0; u < in_.width; ++u) {
+        const double q = inverse(u, v);
+        if (q == 0.0) continue;
+        const double noise_m = noise(u, v);
+        int w = 0;  // a plane of n pixels keeps 1 / sqrt(n) of their noise in its middle
+        while (w < kWidest && noise_m > accepted_m * (2.0 * w + 1.0)) ++w;
+        noises.push_back(noise_m);
+        left.push_back(noise_m / (2.0 * w + 1.0));
+        widths.push_back(w == 0 ? 0.0 : 2.0 * w + 1.0);
+        if (w == 0) continue;
+        const auto plane = plane_round(u, v, w, noise_m * q * q);
+        // Planar depth and range along a ray are in proportion.
+        if (plane && plane->x > 0.0) depth[index(u, v)] *= q / plane->x;
+      }
+    if (noises.empty()) return {};
+    return {median(noises), median(left), static_cast<int>(median(widths))};
   }
 
  private:
@@ -146,9 +167,9 @@ class Estimator {
   }
 
   // A plane n . P = d is seen at the inverse depth q = (n.x x + n.y y - n.z) / d in the ray (x, y,
-  // -1). Fitted by least squares to the pixels around; what lies off the first fits is of another
-  // surface.
-  std::optional<Vec3> from_plane(std::int64_t u, std::int64_t v, int w, double noise) const {
+  // -1): q = x + y du + z dv of what this returns. Fitted by least squares to the pixels around;
+  // what lies off the first fits is of another surface.
+  std::optional<Vec3> plane_round(std::int64_t u, std::int64_t v, int w, double noise) const {
     const double q = inverse(u, v);
     // A surface turned by 72 degrees to the sight rises by 3 pixels' widths a pixel.
     const double rise = 3.0 * q / std::sqrt(in_.intrinsics.fx * in_.intrinsics.fy);
@@ -172,6 +193,13 @@ class Estimator {
       if (n < 3 || !(std::abs(glm::determinant(normal)) > 1e-9)) return std::nullopt;
       fit = glm::inverse(normal) * right;
     }
+    return fit;
+  }
+
+  std::optional<Vec3> normal_of_plane(std::int64_t u, std::int64_t v, int w, double noise) const {
+    const auto plane = plane_round(u, v, w, noise);
+    if (!plane) return std::nullopt;
+    const Vec3& fit = *plane;
     const Intrinsics& k = in_.intrinsics;
     const double x = (u + 0.5 - k.cx) / k.fx, y = (k.cy - v - 0.5) / k.fy;
     const double across = fit.y * k.fx, up = -fit.z * k.fy;
@@ -188,6 +216,13 @@ class Estimator {
 
 DepthNormals normals_from_depth(const SonarInput& in) {
   return Estimator(in).run();
+}
+
+SmoothedDepth smooth_depth(SonarInput& in, double accepted_m) {
+  std::vector<double> depth = in.depth;
+  const SmoothedDepth told = Estimator(in).smooth(accepted_m, depth);
+  in.depth = std::move(depth);
+  return told;
 }
 
 }  // namespace neritic::sonar

@@ -24,4 +24,13 @@ struct DepthNormals {
 // in.normals is not read.
 DepthNormals normals_from_depth(const SonarInput& in);
 
+// The depth itself by the same planes, for a gather that counts a cell once in each range bin that
+// its pixels lie in: noise spreads them over more bins, and the energy grows.
+struct SmoothedDepth {
+  double noise_m = 0.0, left_m = 0.0;  // medians: standard deviation before and after
+  int width_px = 0;                    // of the fitted planes; 0: no more noise than is accepted
+};
+// Smooths in.depth where its noise is above accepted_m, by as many pixels as it takes.
+SmoothedDepth smooth_depth(SonarInput& in, double accepted_m);
+
 }  // namespace neritic::sonar

@@ -41,6 +41,7 @@ std::string names_of_terms(const GatherOptions& options) {
   };
   add(options.labels, "labels");
   add(options.reflectivity, "reflectivity");
+  add(options.larger, "small targets");
   if (!options.echo) return names;
   const EchoOptions& echo = *options.echo;
   add(!echo.weights.empty(), "beam weights");
@@ -241,7 +242,8 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
   const auto columns = column_table(grid_, sectors_, layout_, pass.in.sonar_from_gbuffer);
   const gpu::UploadSlice column_slice =
       commands.upload(std::span<const shared::SonarColumn>(columns));
-  const bool reflects = options_.reflectivity && pass.in.labels && pass.in.reflectivity;
+  const bool reflects = options_.reflectivity && pass.in.labels &&
+                        (pass.in.reflectivity || !pass.in.strengths.empty());
   const auto buffer_or_none = [&](graph::BufferHandle handle) {
     return handle ? context.buffer(handle).handle() : no_buffer_.handle();
   };
@@ -251,25 +253,33 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
   const auto words_or_none = [&](graph::BufferHandle handle) {
     return buffer_or_none(texels_ ? graph::BufferHandle{} : handle);
   };
+  const gpu::UploadSlice table =
+      pass.in.strengths.empty()
+          ? gpu::UploadSlice{buffer_or_none(pass.in.reflectivity), 0, VK_WHOLE_SIZE}
+          : commands.upload(pass.in.strengths);
   const Intrinsics& k = layout_.intrinsics;
-  shared::SonarPush push{.n_range = grid_.bins.range,
-                         .n_azimuth = grid_.bins.azimuth,
-                         .n_elevation = grid_.bins.elevation,
-                         .width = layout_.width,
-                         .height = layout_.height,
-                         .fx = static_cast<float>(k.fx),
-                         .fy = static_cast<float>(k.fy),
-                         .cx = static_cast<float>(k.cx),
-                         .cy = static_cast<float>(k.cy),
-                         .near_m = static_cast<float>(layout_.near_m),
-                         .range_min_m = static_cast<float>(grid_.limits.range_min_m),
-                         .bins_per_m = static_cast<float>(1.0 / grid_.range_step_m()),
-                         .bin_m = static_cast<float>(grid_.range_step_m()),
-                         .fixed_scale = static_cast<float>(fixed_scale_),
-                         .edge_bias_bins = kEdgeBias_bins,
-                         .reflectivities = reflects ? pass.in.reflectivities : 0u,
-                         .lean = static_cast<float>(layout_.lean),
-                         .azimuth_step_rad = static_cast<float>(grid_.azimuth_step_rad())};
+  shared::SonarPush push{
+      .n_range = grid_.bins.range,
+      .n_azimuth = grid_.bins.azimuth,
+      .n_elevation = grid_.bins.elevation,
+      .width = layout_.width,
+      .height = layout_.height,
+      .fx = static_cast<float>(k.fx),
+      .fy = static_cast<float>(k.fy),
+      .cx = static_cast<float>(k.cx),
+      .cy = static_cast<float>(k.cy),
+      .near_m = static_cast<float>(layout_.near_m),
+      .range_min_m = static_cast<float>(grid_.limits.range_min_m),
+      .bins_per_m = static_cast<float>(1.0 / grid_.range_step_m()),
+      .bin_m = static_cast<float>(grid_.range_step_m()),
+      .fixed_scale = static_cast<float>(fixed_scale_),
+      .edge_bias_bins = kEdgeBias_bins,
+      .reflectivities = !reflects ? 0u
+                        : pass.in.strengths.empty()
+                            ? pass.in.reflectivities
+                            : static_cast<std::uint32_t>(pass.in.strengths.size()),
+      .lean = static_cast<float>(layout_.lean),
+      .azimuth_step_rad = static_cast<float>(grid_.azimuth_step_rad())};
   const graph::ImageHandle depth = layout_.packed ? pass.in.normals : pass.in.depth;
   std::vector<gpu::BoundResource> bound{
       gpu::bound_buffer(shared::kSonarBindColumns, column_slice.buffer, column_slice.offset,
@@ -280,7 +290,7 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
       gpu::bound_texel_image(shared::kSonarBindLabel, pass.in.labels
                                                           ? context.image(pass.in.labels).view()
                                                           : no_labels_.view()),
-      gpu::bound_buffer(shared::kSonarBindReflectivity, buffer_or_none(pass.in.reflectivity)),
+      gpu::bound_buffer(shared::kSonarBindReflectivity, table.buffer, table.offset, table.size),
       gpu::bound_buffer(shared::kSonarBindSums, words_or_none(pass.out.sums)),
       gpu::bound_buffer(shared::kSonarBindKeys, words_or_none(pass.out.keys)),
       gpu::bound_buffer(shared::kSonarBindScratch, words_or_none(pass.scratch)),

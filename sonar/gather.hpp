@@ -75,6 +75,8 @@ struct GatherOptions {
   Gather gather = Gather::kPlane;
   bool labels = true;        // keep the class of each cell's strongest return
   bool reflectivity = true;  // a table by instance label will be given
+  // Some instances may be drawn larger than they are: where Inputs::strengths has less than 0.
+  bool larger = false;
   GatherThreads threads;
   std::optional<EchoOptions> echo;
 };
@@ -96,6 +98,9 @@ class SonarGather {
     graph::ImageHandle labels;          // R16G16_UINT class, instance; may be absent
     graph::BufferHandle reflectivity;   // floats by instance label; may be absent
     std::uint32_t reflectivities = 0;
+    // Instead of that table, until the run. Of an instance that is drawn larger than it is: less
+    // than 0, its size the strength a sample.
+    std::span<const float> strengths = {};
     // Ghosts: what the sonar itself sees, of the same sizes; CHECKed to be there.
     graph::ImageHandle direct_depth, direct_labels;
     // Sonar axes from the axes that the normals are in (world axes of a scene's G-buffer).

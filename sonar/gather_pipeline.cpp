@@ -88,6 +88,7 @@ Status SonarGather::make_pipeline(gpu::Device& device) {
                     {shared::kSonarSpecFacing, layout_.normals_face_sensor},
                     {shared::kSonarSpecReflect, options_.reflectivity},
                     {shared::kSonarSpecLabels, options_.labels},
+                    {shared::kSonarSpecLarger, options_.larger},
                     {shared::kSonarSpecFootprint, footprint_of(grid_, options_)},
                     {shared::kSonarSpecTexels, texels_},
                     {shared::kSonarSpecLeaning, layout_.lean != 0.0}};

@@ -62,6 +62,7 @@ void HeadGather::begin(graph::FrameGraph& graph, const View& view, const Table& 
   inputs.sonar_from_gbuffer = view.sonar_from_gbuffer;
   inputs.reflectivity = table.buffer;
   inputs.reflectivities = table.size;
+  inputs.strengths = table.strengths;
   const auto target = [&](const gpu::Buffer& buffer, const char* name) {
     return buffer ? graph.import_buffer(ping.prefix + name, buffer) : graph::BufferHandle{};
   };
@@ -80,8 +81,8 @@ void HeadGather::begin(graph::FrameGraph& graph, const View& view, const Table& 
   if (inputs.records_target) graph.output(ping.out.records, graph::Access::kHostRead);
 }
 
-void HeadGather::add_ghost(graph::FrameGraph& graph, const View& view, const std::string& prefix,
-                           HeadPing& ping) {
+void HeadGather::add_ghost(graph::FrameGraph& graph, const View& view, const Table& table,
+                           const std::string& prefix, HeadPing& ping) {
   const std::size_t i = ping.ghosts.size();
   NERITIC_CHECK(i < desc_.mirrors.size(), "ghosts of {} mirrors", desc_.mirrors.size());
   PingState state = ping.state;
@@ -94,6 +95,9 @@ void HeadGather::add_ghost(graph::FrameGraph& graph, const View& view, const std
   inputs.normals = view.normals;
   inputs.labels = view.labels;
   inputs.sonar_from_gbuffer = view.sonar_from_gbuffer;
+  inputs.reflectivity = table.buffer;
+  inputs.reflectivities = table.size;
+  inputs.strengths = table.strengths;
   inputs.direct_depth = ping.inputs.depth;
   inputs.direct_labels = ping.inputs.labels;
   inputs.sums_so_far = ping.out.sums;

@@ -66,12 +66,13 @@ class HeadGather {
   struct Table {
     graph::BufferHandle buffer;
     std::uint32_t size = 0;
+    std::span<const float> strengths = {};  // SonarGather::Inputs'
   };
   // Adds the gather of the head's own view. ping: with prefix, host and state.
   void begin(graph::FrameGraph& graph, const View& view, const Table& table, HeadPing& ping);
   // Adds the next mirror's ghosts to the sums. prefix: of these passes.
-  void add_ghost(graph::FrameGraph& graph, const View& view, const std::string& prefix,
-                 HeadPing& ping);
+  void add_ghost(graph::FrameGraph& graph, const View& view, const Table& table,
+                 const std::string& prefix, HeadPing& ping);
   // Adds the receiver and, if there is a host, what brings the results to it.
   void end(graph::FrameGraph& graph, HeadPing& ping) const;
 

@@ -23,6 +23,7 @@ struct Seen {
   bool mirrored;
   bool hides_back_faces;
   double order_m;
+  const DrawnLarger* larger = nullptr;
 };
 
 // Indices that culling must save before an instance gets a draw of its own: a draw command costs
@@ -67,6 +68,7 @@ class DrawListBuilder {
         views_(views),
         options_(options),
         origin_(views.origin_m()),
+        larger_of_(options.least_drawn ? scene.objects.size() : 0),
         culling_(views) {
     for (const ViewDesc& view : views.views) {
       const FrustumTangents& t = view.tangents;
@@ -81,6 +83,10 @@ class DrawListBuilder {
 
   DrawList build() {
     out_.all_triangles = gpu_scene_.triangles();
+    if (options_.least_drawn) {
+      out_.larger = drawn_larger(scene_, gpu_scene_, state_, origin_, *options_.least_drawn);
+      for (const DrawnLarger& larger : out_.larger) larger_of_[larger.object] = &larger;
+    }
     for (std::uint32_t g = 0; g < gpu_scene_.groups().size(); ++g) add_group(g);
     std::stable_sort(out_.opaque.begin(), out_.opaque.end(),
                      [](const Draw& a, const Draw& b) { return a.order_m < b.order_m; });
@@ -141,7 +147,9 @@ class DrawListBuilder {
       const double center_m = glm::length(center), stretch = largest_stretch(m);
       const double error_m = kFloatError * (glm::length(Vec3(m[3])) +
                                             stretch * (glm::length(own_center_m) + own_radius_m));
-      if (bounded && !any_view_sees(views_, center, own_radius_m * stretch + error_m)) continue;
+      const DrawnLarger* larger = larger_of_.empty() ? nullptr : larger_of_[a.object];
+      if (bounded && !larger && !any_view_sees(views_, center, own_radius_m * stretch + error_m))
+        continue;
       const double order_m = blend ? center_m : nearness(center_m, own_radius_m * stretch);
       std::uint32_t level = 0;
       if (options_.mesh_error_px > 0.0 && bounded && !blend) {
@@ -161,7 +169,7 @@ class DrawListBuilder {
       const bool hides =
           options_.hide_back_faces && primitive.closed && all_eyes_outside(views_, primitive, m);
       seen.push_back(
-          {&a, m, deformed, level, glm::determinant(glm::dmat3(m)) < 0.0, hides, order_m});
+          {&a, m, deformed, level, glm::determinant(glm::dmat3(m)) < 0.0, hides, order_m, larger});
     }
     return seen;
   }
@@ -192,7 +200,7 @@ class DrawListBuilder {
     bool joins = false;
     for (const Seen& s : alike) {
       const auto first_range = static_cast<std::uint32_t>(out_.ranges.size());
-      const bool part = clusters && add_visible_part(primitive, s);
+      const bool part = clusters && !s.larger && add_visible_part(primitive, s);
       if (part && out_.ranges.size() == first_range) continue;  // nothing of it is seen
       if (part || !joins) {
         if (!part) out_.ranges.push_back(whole(primitive, s.level));
@@ -235,6 +243,12 @@ class DrawListBuilder {
     instance.label = scene_.objects[a.object].class_id | std::uint32_t{a.label} << 16;
     instance.deformed = seen.deformed;
     out_.instances.push_back(instance);
+    if (!out_.larger.empty()) {
+      shared::NextInstance drawn{};
+      set_rows(drawn, seen.larger ? seen.larger->drawn_from_true * seen.origin_from_primitive
+                                  : seen.origin_from_primitive);
+      out_.drawn_instances.push_back(drawn);
+    }
     if (!state_.motion) return;
     Mat4 next = world_from_appearance(
         scene_, state_.next_world_from_object[a.object], state_.next_poses[a.object], a,
@@ -251,6 +265,7 @@ class DrawListBuilder {
   const ViewSet& views_;
   const DrawListOptions options_;
   const Vec3 origin_;
+  std::vector<const DrawnLarger*> larger_of_;  // an object; empty: none is
   const ClusterCulling culling_;
   struct Eye {
     Vec3 position_m, ahead;

@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "engine/render/cluster_culling.hpp"
 #include "engine/render/frame_state.hpp"
+#include "engine/render/least_drawn.hpp"
 #include "engine/render/views.hpp"
 
 namespace neritic::render {
@@ -26,6 +28,9 @@ struct Draw {
 struct DrawList {
   std::vector<shared::Instance> instances;
   std::vector<shared::NextInstance> next_instances;  // empty without motion
+  // Where each instance is drawn; empty where each is drawn as it is.
+  std::vector<shared::NextInstance> drawn_instances;
+  std::vector<DrawnLarger> larger;
   std::vector<IndexRange> ranges;
   std::vector<Draw> opaque;   // front to back
   std::vector<Draw> blended;  // back to front, one instance a draw
@@ -45,6 +50,8 @@ struct DrawListOptions {
   bool hide_back_faces = false;
   // Objects of this class are left out; 0: none are.
   std::uint16_t without_class = 0;
+  // Objects smaller than this are drawn larger. A geometry G-buffer's only.
+  std::optional<LeastDrawn> least_drawn = {};
   // Flags by object: those with 0 are left out. Empty: none is.
   std::span<const std::uint8_t> objects = {};
   // Meshes may be coarser where that moves nothing by more than so many pixels (see

@@ -64,8 +64,12 @@ gpu::BoundResource bound_slice(std::uint32_t binding, const gpu::UploadSlice& sl
 Renderer::InstanceStreams Renderer::upload_instances(gpu::Commands& commands, const DrawList& draws,
                                                      bool motion) {
   const gpu::UploadSlice now = commands.upload(std::span<const shared::Instance>(draws.instances));
-  if (!motion) return {now, now};
-  return {now, commands.upload(std::span<const shared::NextInstance>(draws.next_instances))};
+  const gpu::UploadSlice drawn =
+      draws.drawn_instances.empty()
+          ? now
+          : commands.upload(std::span<const shared::NextInstance>(draws.drawn_instances));
+  if (!motion) return {now, now, drawn};
+  return {now, commands.upload(std::span<const shared::NextInstance>(draws.next_instances)), drawn};
 }
 
 Result<Renderer::PreparedDraws> Renderer::prepare(const GpuScene& scene, const DrawList& list,
@@ -78,6 +82,7 @@ Result<Renderer::PreparedDraws> Renderer::prepare(const GpuScene& scene, const D
     const GpuMaterial& material = scene.materials()[draw.primitive->material];
     const bool geometry = kind == GBufferKind::kGeometry;
     if (!geometry && !forward && material.emissive != emissive) continue;
+    const bool larger = !list.drawn_instances.empty();
     RasterStage stage = forward                       ? RasterStage::kForward
                         : kind == GBufferKind::kShape ? RasterStage::kShape
                                                       : RasterStage::kSurface;
@@ -85,7 +90,7 @@ Result<Renderer::PreparedDraws> Renderer::prepare(const GpuScene& scene, const D
     NERITIC_TRY(
         const gpu::Pipeline* pipeline,
         raster_pipeline({stage, vk_topology(draw.primitive->topology),
-                         motion && stage != RasterStage::kGeometry,
+                         stage == RasterStage::kGeometry ? larger : motion,
                          emissive && stage == RasterStage::kSurface, list.clipped, view_mask,
                          stage == RasterStage::kGeometry ? 0u : material.flags, parts}));
     // A camera sees the sides that the material has. A sonar hears both sides of a sheet, but of a
@@ -93,7 +98,8 @@ Result<Renderer::PreparedDraws> Renderer::prepare(const GpuScene& scene, const D
     const bool both_sides = material.double_sided || (geometry && !draw.hides_back_faces);
     prepared.draws.push_back({draw,
                               std::span(list.ranges).subspan(draw.first_range, draw.range_count),
-                              pipeline, stage != RasterStage::kGeometry, both_sides, &material});
+                              pipeline, stage == RasterStage::kGeometry && larger,
+                              stage != RasterStage::kGeometry, both_sides, &material});
   }
   return prepared;
 }
@@ -120,14 +126,15 @@ void Renderer::record_draws(const PreparedDraws& prepared, const GpuScene& scene
     // Deformed vertices lie elsewhere than the surface stream's, so both are bound at their own
     // offsets.
     const bool own = d.draw.deformed == kNone;
+    const VkBuffer third = d.larger ? instances.drawn.buffer : scene.surfaces().handle();
     const VkBuffer buffers[] = {own ? scene.positions().handle() : deformed->handle(),
-                                instances.now.buffer, scene.surfaces().handle(),
-                                instances.next.buffer};
+                                instances.now.buffer, third, instances.next.buffer};
     const VkDeviceSize offsets[] = {
         (own ? primitive.first_vertex : d.draw.deformed) * sizeof(shared::VertexPosition),
-        instances.now.offset, primitive.first_vertex * sizeof(shared::VertexSurface),
+        instances.now.offset,
+        d.larger ? instances.drawn.offset : primitive.first_vertex * sizeof(shared::VertexSurface),
         instances.next.offset};
-    vkCmdBindVertexBuffers(cmd, 0, d.surface ? 4 : 2, buffers, offsets);
+    vkCmdBindVertexBuffers(cmd, 0, d.surface ? 4 : d.larger ? 3 : 2, buffers, offsets);
     if (d.surface) {
       vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, bound->layout(), 1, 1,
                               &d.material->set, 0, nullptr);

@@ -13,6 +13,7 @@ struct PreparedDraw {
   Draw draw;
   std::span<const IndexRange> ranges;  // the draw list's
   const gpu::Pipeline* pipeline = nullptr;
+  bool larger = false;      // uses the stream of where instances are drawn
   bool surface = false;     // uses stream 1, the material and push constants
   bool both_sides = false;  // no face culling
   const GpuMaterial* material = nullptr;

@@ -53,7 +53,8 @@ std::span<const std::uint32_t> gbuffer_fragment(bool shape, bool emissive, bool 
   return motion ? shaders::kGbufferMotionFrag : shaders::kGbufferFrag;
 }
 
-std::span<const std::uint32_t> vertex_code(bool plain, bool clipped) {
+std::span<const std::uint32_t> vertex_code(bool plain, bool clipped, bool larger) {
+  if (larger) return clipped ? shaders::kGeometryLargerClippedVert : shaders::kGeometryLargerVert;
   if (plain) return clipped ? shaders::kGeometryClippedVert : shaders::kGeometryVert;
   return clipped ? shaders::kGbufferClippedVert : shaders::kGbufferVert;
 }
@@ -75,7 +76,7 @@ Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
               : shape                                 ? "gbuffer shape"
               : surface                               ? "gbuffer"
                                                       : "forward";
-  desc.vertex_code = vertex_code(plain, clipped);
+  desc.vertex_code = vertex_code(plain, clipped, plain && motion);
   desc.fragment_code = plain     ? shaders::kGeometryFrag
                        : surface ? gbuffer_fragment(shape, emissive, motion)
                        : tinted  ? shaders::kForwardTintedFrag
@@ -86,6 +87,8 @@ Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
   desc.layout.bindings = {{shared::kRasterViews, kUniform}};
   desc.streams = {position_stream(), instance_stream()};
   desc.constants = {{shared::kSpecMultiview, view_mask != 0}};
+  // Of a geometry pass "motion" means that some things are drawn larger than they are.
+  if (plain && motion) desc.streams.push_back(next_instance_stream(true));
   if (!plain) {
     desc.layout.bindings.push_back({shared::kRasterNextPositions, kStorage});
     if (forward) desc.layout.bindings.push_back({shared::kRasterLighting, kUniform});

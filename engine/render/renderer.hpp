@@ -211,9 +211,10 @@ class Renderer {
   // The pipelines that a list of draws needs, made before the pass records.
   struct PreparedDraws;
   struct MaskedDraws;
-  // This frame's instances; next is the same as now where there is no motion.
+  // This frame's instances; next is the same as now where there is no motion, drawn where each is
+  // drawn as it is.
   struct InstanceStreams {
-    gpu::UploadSlice now, next;
+    gpu::UploadSlice now, next, drawn;
   };
   static InstanceStreams upload_instances(gpu::Commands& commands, const DrawList& draws,
                                           bool motion);

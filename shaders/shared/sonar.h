@@ -74,6 +74,9 @@ NERITIC_CONST uint kSonarSpecPacked = 3;   // normal image: unit x, y, z and pla
 NERITIC_CONST uint kSonarSpecFacing = 5;   // else the normals' signs are unknown
 NERITIC_CONST uint kSonarSpecReflect = 6;  // multiply by the reflectivity of the instance
 NERITIC_CONST uint kSonarSpecLabels = 7;   // keep the label of the strongest return
+// Small things are drawn larger than they are: their reflectivity is negative, its size what a
+// sample of them counts.
+NERITIC_CONST uint kSonarSpecLarger = 19;
 // The view's sides lean (render::ViewDesc), and a column's rows look for surfaces all over its
 // width.
 NERITIC_CONST uint kSonarSpecLeaning = 16;

@@ -244,9 +244,10 @@ BeamHit hit_of(SonarColumn s, Look look, vec2 neighbours_m, bool again) {
   float length_of = sqrt(1.0 + s.pixel_tan * s.pixel_tan + ty * ty);
   float along = along_pixel;
   float plane = planar;  // of the pixel
+  bool larger = is_larger(hit.at);  // its slope is that of the thing itself, which does not go on so far
   bool flank = abs(sideways) > abs(along_up);
   float most_m = kFarthest_m;  // that the row's ends may lie from its centre; 0 of a limb
-  if (kPlane != 0) {
+  if (kPlane != 0 && !larger) {
     float along_beam = ahead + s.tan_theta * sideways + e.x * s.sec_theta * along_up;
     float stretch = along_pixel / along_beam;
     float largest = flank ? kLargestFlankStretch : kLargestStretch;
@@ -277,6 +278,7 @@ BeamHit hit_of(SonarColumn s, Look look, vec2 neighbours_m, bool again) {
   if (kFootprint == kSonarFootprintBounded)
     find_ends(s, neighbours_m, e.zw, most_m == 0.0, plane,
               ahead + s.tan_theta * sideways + e.zw * s.sec_theta * along_up, along_pixel, hit);
+  if (larger) hit.ends_m = vec2(hit.range_m);
   return hit;
 }
 

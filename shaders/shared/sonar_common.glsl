@@ -12,6 +12,7 @@ layout(constant_id = kSonarSpecReflect) const uint kReflect = 0;
 layout(constant_id = kSonarSpecLabels) const uint kLabels = 1;
 layout(constant_id = kSonarSpecFootprint) const uint kFootprint = 0;
 layout(constant_id = kSonarSpecLeaning) const uint kLeaning = 0;
+layout(constant_id = kSonarSpecLarger) const uint kLarger = 0;
 layout(local_size_x_id = kSonarSpecColumns, local_size_y_id = kSonarSpecLanes) in;
 
 layout(set = 0, binding = kSonarBindColumns, scalar) readonly buffer Columns { SonarColumn columns[]; };
@@ -56,12 +57,20 @@ uint label_key(float strength, uint label) {
   return max(1u, uint(strength * 65535.0 + 0.5)) << 16 | (65535u - label);
 }
 
+// Whether what a pixel shows is drawn larger than it is.
+bool is_larger(ivec3 at) {
+  if (kLarger == 0) return false;
+  uint instance = texelFetch(label_image, at, 0).y;
+  return instance < c.reflectivities && reflectivity[instance] < 0.0;
+}
+
 // The incidence term times the reflectivity of the pixel's instance; gives the label too.
 float reflected(float strength, ivec3 at, out uvec2 label) {
   label = uvec2(0);
   if (kReflect != 0 || kLabels != 0) label = texelFetch(label_image, at, 0).xy;
   if (kReflect == 0) return strength;
   float reflects = label.y < c.reflectivities ? reflectivity[label.y] : 1.0;
+  if (kLarger != 0) reflects = abs(reflects);
   return strength * clamp(reflects, 0.0, 1.0);
 }
 

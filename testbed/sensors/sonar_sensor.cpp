@@ -41,6 +41,20 @@ sonar::HeadGather::View view_of(const render::GBuffer& g, const Pose& world_from
 // From outside, a closed mesh shows its front faces only.
 constexpr render::DrawListOptions kFrontFaces{.hide_back_faces = true};
 
+// What is drawn larger as a view of the head (or of its mirror image) sees it.
+std::optional<render::LeastDrawn> seen_from(const HeadState& state, const Pose& world_from_head) {
+  std::optional<render::LeastDrawn> least = state.least;
+  if (least) least->world_from_eye = world_from_head.rotation;
+  return least;
+}
+
+// Empty where nothing is drawn larger in this ping: the scene's own table counts.
+std::vector<float> strengths_of(const std::vector<float>& table, const render::DrawList& draws,
+                                const HeadState& state, std::span<const float> weights) {
+  if (draws.larger.empty()) return {};
+  return sample_strengths(table, draws.larger, state.head().samples, weights);
+}
+
 }  // namespace
 
 Result<std::unique_ptr<SonarWork>> SonarSensor::declare(const FrameParts& frame,
@@ -109,24 +123,32 @@ Result<render::GBuffer> SonarSensor::declare_echoes(const FrameParts& frame, con
                     [&] { return state.gather->make_buffers(frame.device, ping.prefix); }));
     ping.host = &*work.buffers;
   }
-  NERITIC_TRY(const render::GBuffer g,
-              declare_geometry(frame, ping.prefix, kFrontFaces, work.sampled));
+  render::DrawListOptions options = kFrontFaces;
+  options.least_drawn = seen_from(state, work.world_from_head);
+  NERITIC_TRY(const render::GBuffer g, declare_geometry(frame, ping.prefix, options, work.sampled));
   sonar::HeadGather::Table table;
   if (const gpu::Buffer* buffer = tables_.of(sonar.made_from))
     table = {
         frame.graph.import_buffer(
             ping.prefix + (sonar.made_from.terms.level ? "backscatter" : "reflectivity"), *buffer),
         static_cast<std::uint32_t>(buffer->size() / sizeof(float))};
-  state.gather->begin(frame.graph, view_of(g, work.world_from_head), table, ping);
-  NERITIC_TRY_STATUS(declare_ghosts(frame, sonar, work));
+  std::span<const float> weights;
+  if (const auto& echo = state.head().echo) weights = echo->weights;
+  work.strengths =
+      strengths_of(tables_.values_of(sonar.made_from), work.sampled.draws, state, weights);
+  sonar::HeadGather::Table own = table;
+  own.strengths = work.strengths;
+  state.gather->begin(frame.graph, view_of(g, work.world_from_head), own, ping);
+  NERITIC_TRY_STATUS(declare_ghosts(frame, sonar, table, work));
   state.gather->end(frame.graph, ping);
   return g;
 }
 
 // Ghosts of a mirror: the scene as the head's mirror image sees it, added to the head's sums.
 Status SonarSensor::declare_ghosts(const FrameParts& frame, const SonarState& sonar,
-                                   HeadWork& work) const {
+                                   const sonar::HeadGather::Table& table, HeadWork& work) const {
   const HeadState& state = *work.state;
+  work.ghost_strengths.reserve(sonar.mirrors.size());
   for (const sonar::Mirror& mirror : sonar.mirrors) {
     work.ghosts.push_back(std::make_unique<ViewsWork>());
     ViewsWork& ghost = *work.ghosts.back();
@@ -138,11 +160,16 @@ Status SonarSensor::declare_ghosts(const FrameParts& frame, const SonarState& so
     ghost.views.within = render::HalfSpace{{0.0, inward, 0.0}, -inward * mirror.height_m};
     // A bottom that mirrors does not stand in its own way.
     const render::DrawListOptions options{
-        .without_class = mirror.water_below ? std::uint16_t{0} : scene::kClasses[0].id};
+        .without_class = mirror.water_below ? std::uint16_t{0} : scene::kClasses[0].id,
+        .least_drawn = seen_from(state, pose)};
     const std::string prefix =
         work.ping.prefix + (mirror.water_below ? "surface ghosts " : "bottom ghosts ");
     NERITIC_TRY(const render::GBuffer g, declare_geometry(frame, prefix, options, ghost));
-    state.gather->add_ghost(frame.graph, view_of(g, pose), prefix, work.ping);
+    work.ghost_strengths.push_back(
+        strengths_of(tables_.values_of(sonar.made_from), ghost.draws, state, {}));
+    sonar::HeadGather::Table own = table;
+    own.strengths = work.ghost_strengths.back();
+    state.gather->add_ghost(frame.graph, view_of(g, pose), own, prefix, work.ping);
   }
   return {};
 }

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "sonar/head_gather.hpp"
+#include "testbed/sensors/small_targets.hpp"
 #include "testbed/sensors/view_sensor.hpp"
 
 namespace neritic::testbed {
@@ -14,10 +16,15 @@ namespace neritic::testbed {
 struct EchoTables {
   std::vector<float> reflectivities;      // by instance label; empty: all are 1
   gpu::Buffer reflectivity, backscatter;  // by instance label; empty where no sonar needs them
+  std::vector<float> strengths;           // the backscatter's, by instance label
   double backscatter_scale = 1.0;         // strength that 1 in the table stands for
+  double least_object_m = 0.0;            // small_targets.hpp
 
   static Result<EchoTables> create(gpu::Device& device, const scene::Scene& scene);
   const gpu::Buffer* of(const scene::Sonar& sonar) const;  // nullptr: all are 1
+  const std::vector<float>& values_of(const scene::Sonar& sonar) const {
+    return sonar.terms.level ? strengths : reflectivities;
+  }
 };
 
 // A head as long as the settings stay.
@@ -28,6 +35,8 @@ struct HeadState {
   sonar::BeamGrid shown;       // the cells that its pixels are counted by: beams where it can
   // The view that beams gather from: it leans, but for cones and the published gather.
   sonar::LeaningView sampled;
+  // Where some of the scene's objects may be smaller than the cells: how large they are drawn.
+  std::optional<render::LeastDrawn> least;
   std::unique_ptr<sonar::HeadGather> gather;
   Ring<sonar::HeadBuffers> buffers;
   const sonar::Head& head() const { return gather->head(); }
@@ -47,7 +56,9 @@ struct HeadWork {
   Pin<sonar::HeadBuffers> buffers;  // empty: nothing is brought to the host
   sonar::HeadPing ping;
   ViewsWork sampled, arrays;
-  std::vector<std::unique_ptr<ViewsWork>> ghosts;  // a mirror
+  std::vector<float> strengths;  // of this ping, where something is drawn larger than it is
+  std::vector<std::vector<float>> ghost_strengths;  // a mirror
+  std::vector<std::unique_ptr<ViewsWork>> ghosts;   // a mirror
   double heading_rad = 0.0;
   Pose world_from_sonar, world_from_head;
 };
@@ -79,7 +90,8 @@ class SonarSensor {
                       HeadWork& work) const;
   Result<render::GBuffer> declare_echoes(const FrameParts& frame, const Capture& capture,
                                          const SonarState& sonar, HeadWork& work) const;
-  Status declare_ghosts(const FrameParts& frame, const SonarState& sonar, HeadWork& work) const;
+  Status declare_ghosts(const FrameParts& frame, const SonarState& sonar,
+                        const sonar::HeadGather::Table& table, HeadWork& work) const;
   SonarFrame decode_head(const SonarState& sonar, const HeadWork& work) const;
 
   const EchoTables& tables_;

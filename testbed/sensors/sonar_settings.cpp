@@ -26,11 +26,13 @@ Result<gpu::Buffer> table_buffer(gpu::Device& device, const char* name,
 Result<EchoTables> EchoTables::create(gpu::Device& device, const scene::Scene& scene) {
   EchoTables made;
   if (scene.sonars.empty()) return made;
+  made.least_object_m = testbed::least_object_m(scene);
   made.reflectivities = sonar::reflectivity_table(scene);
   NERITIC_TRY(made.reflectivity, table_buffer(device, "reflectivity", made.reflectivities));
   if (std::ranges::any_of(scene.sonars, [](const auto& s) { return s.terms.level.has_value(); })) {
     const sonar::BackscatterTable table = sonar::backscatter_table(scene);
     made.backscatter_scale = table.scale;
+    made.strengths = table.strength;
     NERITIC_TRY(made.backscatter, table_buffer(device, "backscatter", table.strength));
   }
   return made;
@@ -58,21 +60,29 @@ Result<HeadState> SonarSensor::make_head(gpu::Device& device, const scene::Sonar
                sonar::gbuffer_size(h.shown, first, state.pixels_per_cell, max_extent)};
   h.sampled = upright ? h.upright
                       : sonar::leaning_view(head.samples, first, state.pixels_per_cell, max_extent);
+  // The published algorithm has every pixel count alike.
+  if (state.mode != sonar::Gather::kPublished) {
+    const render::LeastDrawn least = least_drawn(head, sonar, state.pixels_per_cell);
+    const double least_rad = tables_.least_object_m / sonar.range_max_m;
+    if (tables_.least_object_m > 0.0 && least_rad < 2.0 * std::max(least.wide_rad, least.high_rad))
+      h.least = least;
+  }
   sonar::GBufferLayout layout;
   layout.width = h.sampled.size.width;
   layout.height = h.sampled.size.height;
   layout.intrinsics = intrinsics_of(h.sampled.tangents, layout.width, layout.height);
   layout.lean = h.sampled.lean;
   layout.near_m = sonar.near_m;
-  NERITIC_TRY(
-      sonar::HeadGather gather,
-      sonar::HeadGather::create(
-          device, {.sonar = state.made_from,
-                   .head = std::move(head),
-                   .sectors = h.sectors,
-                   .layout = layout,
-                   .options = {.gather = state.mode, .reflectivity = tables_.of(sonar) != nullptr},
-                   .mirrors = state.mirrors}));
+  NERITIC_TRY(sonar::HeadGather gather,
+              sonar::HeadGather::create(
+                  device, {.sonar = state.made_from,
+                           .head = std::move(head),
+                           .sectors = h.sectors,
+                           .layout = layout,
+                           .options = {.gather = state.mode,
+                                       .reflectivity = tables_.of(sonar) != nullptr || h.least,
+                                       .larger = h.least.has_value()},
+                           .mirrors = state.mirrors}));
   h.gather = std::make_unique<sonar::HeadGather>(std::move(gather));
   return h;
 }

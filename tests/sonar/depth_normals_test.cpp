@@ -123,6 +123,37 @@ TEST(DepthNormals, CleanDepthIsLeftAsItIs) {
   }
 }
 
+// The published gather counts a cell once in each range bin that its pixels lie in, so that noise
+// makes it louder.
+TEST(DepthNormals, NoisyDepthKeepsThePublishedGathersEnergy) {
+  const BeamGrid grid = symmetric_grid(1.0, 5.0, radians(44.0), radians(34.0), {400, 40, 30});
+  const auto energy = [&](SonarInput in, const Shape& shape) {
+    in.normals.clear();
+    for (std::uint32_t v = 0; v < in.height; ++v)
+      for (std::uint32_t u = 0; u < in.width; ++u) {
+        const Vec3 ray((u + 0.5 - 80.0) / 180.0, (60.0 - v - 0.5) / 180.0, -1.0);
+        const Vec3 n = shape.normal(ray * shape.depth(ray));
+        in.normals.insert(in.normals.end(), {n.x, n.y, n.z});
+      }
+    double sum = 0.0;
+    for (const float cell : reference_image(grid, std::span(&in, 1)).intensity) sum += cell;
+    return sum;
+  };
+  for (const Shape& shape : {plane({0, 0, 1}, 3.0), plane({0.1, 0.5, 1}, 2.5)}) {
+    const double clean = energy(picture_of(shape, 0.0), shape);
+    SonarInput in = picture_of(shape, 0.02);
+    EXPECT_GT(energy(in, shape), 1.3 * clean);
+    const SmoothedDepth told = smooth_depth(in, 0.25 * grid.range_step_m());
+    EXPECT_NEAR(told.noise_m, 0.02, 0.002);
+    EXPECT_GE(told.width_px, 7);
+    EXPECT_NEAR(energy(in, shape) / clean, 1.0, 0.05);
+    SonarInput untouched = picture_of(shape, 0.0);
+    const std::vector<double> before = untouched.depth;
+    EXPECT_EQ(smooth_depth(untouched, 0.25 * grid.range_step_m()).width_px, 0);
+    EXPECT_EQ(untouched.depth, before);
+  }
+}
+
 // A crate's face 0.3 m before a wall: noise is smoothed on each, not across the outline.
 TEST(DepthNormals, AnOutlineStaysSharp) {
   Shape crate = plane({0, 0, 1}, 3.0);

@@ -148,6 +148,15 @@ TEST(SonarNotes, NoiseThatTiltsEstimatedNormalsIsTold) {
                 "31 degrees: they come from planes fitted to 11 x 11 pixels, off by about 1.4"));
 }
 
+TEST(SonarNotes, NoiseThatThePublishedGatherWouldCountTwiceIsTold) {
+  EXPECT_FALSE(tools::smoothing_note({.noise_m = 0.001}, 0.01));
+  EXPECT_THAT(
+      tools::smoothing_note({0.02, 0.0022, 9}, 0.01).value_or(""),
+      HasSubstr("noisy by about 20 mm, 2 range bins, and the published gather counts a cell "
+                "once in each bin that its pixels lie in: depths come from planes fitted to "
+                "9 x 9 pixels, noisy by about 2.2 mm (--gather plane"));
+}
+
 sonar::MapFile depth_map(std::uint32_t channels, std::vector<double> values,
                          std::vector<std::string> names = {}) {
   sonar::MapFile map;

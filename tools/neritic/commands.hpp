@@ -38,6 +38,7 @@ struct RenderFlags {
   bool own_rates = false;   // a sensor is in those frames only in which its rate makes it due
   StepFileFlags files;      // of scenes with physics: the log
   std::optional<std::uint64_t> seed;  // instead of the scene's
+  std::uint32_t runs = 0;             // 0: one, straight into out
 };
 Result<std::string> run_render(const RenderFlags& flags);
 

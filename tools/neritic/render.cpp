@@ -19,6 +19,7 @@
 #include "tools/neritic/load_scene.hpp"
 #include "tools/neritic/named_sensors.hpp"
 #include "tools/neritic/recorded_scene.hpp"
+#include "tools/neritic/render_runs.hpp"
 #include "tools/neritic/render_sheet.hpp"
 #include "tools/neritic/step_files.hpp"
 
@@ -313,7 +314,10 @@ Status choose_frames(RenderFlags& flags, const SampleLog* recorded, double rate_
 
 }  // namespace
 
-Result<std::string> run_render(const RenderFlags& asked) {
+namespace {
+
+// One run; told: how it went.
+Result<std::string> render_once(const RenderFlags& asked, RenderedRun& told) {
   RenderFlags flags = asked;
   NERITIC_TRY_STATUS(check_replay(flags));
   if (!(std::abs(flags.time_s) <= kLatestTime_s))
@@ -332,6 +336,7 @@ Result<std::string> run_render(const RenderFlags& asked) {
   const SampleLog* log = recorded ? &*recorded : nullptr;
   NERITIC_TRY(scene::Scene scene, load(flags, log, physics_scene));
   if (flags.scene.empty()) flags.scene = scene.path;
+  told.seed = scene.seed;
   NERITIC_TRY(ChosenRender chosen, choose(flags, scene));
   LoopSensors& sensors = chosen.sensors;
   for (const std::string& note : scene.notes) log_warn("{}", note);
@@ -362,11 +367,15 @@ Result<std::string> run_render(const RenderFlags& asked) {
 
   std::optional<StepFiles> step_files;
   StepProgress approach("second of the dive", flags.time_s);
+  std::optional<DiveLog> outcome_log;
   std::vector<StepSink*> step_sinks;
   if (physics) {
     step_files.emplace(flags.files, session->scene().title, RecordingOptions{}, *physics);
     step_sinks = step_files->sinks();
     step_sinks.push_back(&approach);
+    if (asked.runs > 0)
+      step_sinks.push_back(
+          &outcome_log.emplace(physics->world(), 0.0, std::vector<std::unique_ptr<RowSink>>()));
   }
   std::vector<SampleSource*> sources;
   if (replay) {
@@ -396,7 +405,17 @@ Result<std::string> run_render(const RenderFlags& asked) {
     return stopped_render(flags, loop.frames(), step_s, files.wrote_track());
   warn_of_leftovers(flags, chosen, files.wrote_track(), files.folders());
   NERITIC_TRY_STATUS(check_validation(*device));
+  if (outcome_log)
+    told.outcomes = outcomes_of(physics->world(), physics->newest().state, *outcome_log, told.seed);
   return summary(flags, session->scene(), chosen, files.wrote_track());
+}
+
+}  // namespace
+
+Result<std::string> run_render(const RenderFlags& flags) {
+  RenderedRun told;
+  if (flags.runs == 0) return render_once(flags, told);
+  return render_runs(flags, render_once);
 }
 
 }  // namespace neritic::tools

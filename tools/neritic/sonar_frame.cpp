@@ -83,10 +83,15 @@ std::optional<sonar::PointCloud> add_findings(const SonarJob& job, const sonar::
   return cloud;
 }
 
+// The published algorithm, by either method.
+bool counts_each_bin(const SonarJob& job) {
+  return job.flags.method == "reference" || job.gather == sonar::Gather::kPublished;
+}
+
 // Notes, for the first frame only, which part of the sonar's wedge the images cover.
 void note_coverage(const SonarJob& job, const sonar::SonarInput& in, SonarNotes& notes) {
   if (!notes.first(SonarNotes::About::kCoverage)) return;
-  const bool published = job.flags.method == "reference" || job.gather == sonar::Gather::kPublished;
+  const bool published = counts_each_bin(job);
   const sonar::BeamGrid& grid = job.head.beams;
   const Coverage coverage = coverage_of(grid, in);
   if (const auto note = coverage_note(grid, coverage, published)) notes.say(*note);
@@ -202,12 +207,21 @@ Result<LoadedFrame> load_frame(const SonarJob& job, const sonar::FrameFiles& fil
   note_coverage(job, frame.in, notes);
   const auto noise = noise_note(estimate);
   if (noise && notes.first(SonarNotes::About::kNoise)) notes.say(*noise);
+  sonar::SmoothedDepth smoothed;
+  const double bin_m = job.head.beams.range_step_m();
+  if (counts_each_bin(job)) smoothed = sonar::smooth_depth(frame.in, kAcceptedNoise_bins * bin_m);
+  const auto smoothing = smoothing_note(smoothed, bin_m);
+  if (smoothing && notes.first(SonarNotes::About::kSmoothed)) notes.say(*smoothing);
   frame.files = files;
   frame.facts = facts_of(job, files, frame.in);
   if (!normals)
     frame.facts["estimated_normals"] = {{"depth_noise_m", estimate.noise_m},
                                         {"error_deg", degrees(estimate.error_rad)},
                                         {"width_px", estimate.width_px}};
+  if (smoothing)
+    frame.facts["smoothed_depth"] = {{"depth_noise_m", smoothed.noise_m},
+                                     {"left_m", smoothed.left_m},
+                                     {"width_px", smoothed.width_px}};
   frame.facts["timings_ms"]["read"] = to_ms(now_ns() - start);
   return frame;
 }

@@ -144,6 +144,16 @@ std::optional<std::string> noise_note(const sonar::NormalEstimate& estimate) {
       estimate.width_px, degrees(estimate.error_rad));
 }
 
+std::optional<std::string> smoothing_note(const sonar::SmoothedDepth& smoothed, double bin_m) {
+  if (smoothed.width_px == 0) return std::nullopt;
+  return fmt::format(
+      "the depth is noisy by about {:.2g} mm, {:.2g} range bins, and the published gather counts a "
+      "cell once in each bin that its pixels lie in: depths come from planes fitted to {} x {} "
+      "pixels, noisy by about {:.2g} mm (--gather plane needs no smoothing)",
+      1e3 * smoothed.noise_m, smoothed.noise_m / bin_m, smoothed.width_px, smoothed.width_px,
+      1e3 * smoothed.left_m);
+}
+
 bool SonarNotes::first(About about) {
   const std::lock_guard lock(mutex_);
   const unsigned bit = 1u << static_cast<unsigned>(about);

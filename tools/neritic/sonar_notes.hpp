@@ -38,10 +38,15 @@ std::optional<std::string> normals_note(const Coverage& coverage, bool estimated
 // Where the depth's noise would have tilted estimated normals by much.
 std::optional<std::string> noise_note(const sonar::NormalEstimate& estimate);
 
+// Where the published gather would count a cell in more range bins than its surface crosses.
+std::optional<std::string> smoothing_note(const sonar::SmoothedDepth& smoothed, double bin_m);
+// Noise of this part of a bin changes the published gather's energy by some per cent.
+inline constexpr double kAcceptedNoise_bins = 0.25;
+
 // Notes that are printed once in a run, however many frames they concern. Any thread.
 class SonarNotes {
  public:
-  enum class About : unsigned { kWholeMetres, kCoverage, kNoise };
+  enum class About : unsigned { kWholeMetres, kCoverage, kNoise, kSmoothed };
 
   // Whether nothing was said about it yet; true once.
   bool first(About about);

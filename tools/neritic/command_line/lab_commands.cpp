@@ -147,7 +147,8 @@ void add_experiment(CLI::App& app, CommandLine& line) {
                    "folder for runs.jsonl, runs.csv, results.json, report.html")
       ->required();
   command->add_option("--runs", flags->runs, "runs of each condition, in place of the scenario's");
-  command->add_option("--seed", flags->seed, "seed of the first run, in place of the scenario's");
+  command->add_option("--seed", flags->seed, "seed of the first run, in place of the scenario's")
+      ->check(seed_number);
   command->add_option(
       "--set", flags->set,
       "KEY=VALUE: a setting in place of the scenario's; a list [A, B] makes conditions");

@@ -80,8 +80,15 @@ void add_render(CLI::App& app, Run& run) {
                       "where vehicles or divers move by physics: their dive as a .csv");
   command->add_option("--log-rate", flags->files.log_rate_hz,
                       "its rows a second, else one a control period");
-  command->add_option("--seed", flags->seed,
-                      "of the sensors' noise, instead of the scene's; what is scattered stays");
+  command
+      ->add_option("--seed", flags->seed,
+                   "of the sensors' noise, instead of the scene's; what is scattered stays")
+      ->check(seed_number);
+  command
+      ->add_option("--runs", flags->runs,
+                   "so many times, with the seeds from --seed on, into OUT/run_0000 and on; where "
+                   "missions end, a table of outcomes")
+      ->check(between(1, 100000));
   command->add_flag(
       "--sheet", flags->sheet,
       "also pictures of what each sensor sees and of the first camera's depth, normals, "
@@ -144,8 +151,10 @@ void add_dive(CLI::App& app, CommandLine& line) {
   command->add_option("--save", flags->files.save, "the state at the end, for --restore");
   command->add_option("--restore", flags->restore,
                       "goes on from a saved state of the same scene, --seconds more");
-  command->add_option("--seed", flags->seed,
-                      "of the sensors' noise, instead of the scene's; what is scattered stays");
+  command
+      ->add_option("--seed", flags->seed,
+                   "of the sensors' noise, instead of the scene's; what is scattered stays")
+      ->check(seed_number);
   command
       ->add_option("--runs", flags->runs,
                    "with --headless: so many dives, with the seeds from --seed on, until their "

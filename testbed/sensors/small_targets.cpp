@@ -1,0 +1,98 @@
+#include "testbed/sensors/small_targets.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/scene/animation.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+// Samples in an ellipse of so many cells keep its area within a tenth or so wherever it lies.
+constexpr double kCells = 48.0, kMostColumns = 4.0, kPartOfBeam = 1.0 / 3.0;
+constexpr double kPartOfAperture = 0.25;
+
+// The weight over the elevations of an ellipse from low to high.
+double mean_weight(const sonar::BeamGrid& grid, std::span<const float> weights, double azimuth_rad,
+                   double low_rad, double high_rad) {
+  constexpr int kPlaces = 15;
+  const auto column = static_cast<std::uint32_t>(
+      std::clamp((azimuth_rad - grid.limits.azimuth_min_rad) / grid.azimuth_step_rad(), 0.0,
+                 grid.bins.azimuth - 1.0));
+  double sum = 0.0, all = 0.0;
+  for (int i = 0; i < kPlaces; ++i) {
+    const double x = (i + 0.5) / kPlaces, chord = std::sqrt(x * (1.0 - x));
+    const double row = (low_rad + x * (high_rad - low_rad) - grid.limits.elevation_min_rad) /
+                           grid.elevation_step_rad() -
+                       0.5;
+    const double at = std::clamp(row, 0.0, grid.bins.elevation - 1.0);
+    const auto lower = static_cast<std::size_t>(at);
+    const std::size_t upper = std::min<std::size_t>(lower + 1, grid.bins.elevation - 1);
+    const double part = at - static_cast<double>(lower);
+    const double weight = (1.0 - part) * weights[lower * grid.bins.azimuth + column] +
+                          part * weights[upper * grid.bins.azimuth + column];
+    sum += chord * weight;
+    all += chord;
+  }
+  return sum / all;
+}
+
+}  // namespace
+
+render::LeastDrawn least_drawn(const sonar::Head& head, const scene::Sonar& sonar,
+                               double pixels_per_cell) {
+  const sonar::BeamGrid& grid = head.samples;
+  const bool cone = sonar.kind == scene::SonarKind::kEchoSounder;
+  // A cell or a pixel, whichever is larger.
+  const double coarser = std::max(1.0, 1.0 / pixels_per_cell);
+  const double columns = std::clamp(
+      cone ? kMostColumns : head.samples_per_beam * kPartOfBeam / coarser, 1.0, kMostColumns);
+  const double aperture_rad = cone ? 2.0 * sonar.semi_angle_rad : sonar.elevation_rad;
+  render::LeastDrawn least;
+  least.wide_rad = columns * coarser * grid.azimuth_step_rad();
+  if (cone) least.wide_rad = std::min(least.wide_rad, kPartOfAperture * aperture_rad);
+  least.high_rad = std::min(kCells / columns * coarser * grid.elevation_step_rad(),
+                            kPartOfAperture * aperture_rad);
+  least.azimuth_min_rad = grid.limits.azimuth_min_rad;
+  least.azimuth_max_rad = grid.limits.azimuth_max_rad;
+  least.elevation_min_rad = grid.limits.elevation_min_rad;
+  least.elevation_max_rad = grid.limits.elevation_max_rad;
+  return least;
+}
+
+double least_object_m(const scene::Scene& scene) {
+  double least_m = 0.0;
+  for (const scene::Object& object : scene.objects) {
+    if (object.model < 0 || !object.copies.empty()) continue;
+    const scene::Model& model = *scene.models[object.model];
+    const scene::Bounds bounds = model_bounds(model, evaluate_pose(model, -1, 0.0));
+    if (bounds.empty()) continue;
+    const Vec3 size_m = glm::abs((bounds.max - bounds.min) * object.scale);
+    const double most_m = std::max({size_m.x, size_m.y, size_m.z});
+    if (most_m > 0.0 && (least_m == 0.0 || most_m < least_m)) least_m = most_m;
+  }
+  return least_m;
+}
+
+std::vector<float> sample_strengths(std::vector<float> strengths,
+                                    const std::vector<render::DrawnLarger>& larger,
+                                    const sonar::BeamGrid& samples,
+                                    std::span<const float> weights) {
+  for (const render::DrawnLarger& target : larger) {
+    if (strengths.size() <= target.label) strengths.resize(target.label + std::size_t{1}, 1.0f);
+    double scale = 1.0 / target.area;
+    if (!weights.empty()) {
+      const double own =
+          mean_weight(samples, weights, target.azimuth_rad, target.low_rad, target.high_rad);
+      const double drawn = mean_weight(samples, weights, target.azimuth_rad, target.drawn_low_rad,
+                                       target.drawn_high_rad);
+      // In a pattern's null nothing is worth a correction.
+      if (own > 0.0 && drawn > 0.0) scale *= std::clamp(own / drawn, 0.1, 10.0);
+    }
+    float& strength = strengths[target.label];
+    strength = -std::abs(static_cast<float>(strength * scale));
+  }
+  return strengths;
+}
+
+}  // namespace neritic::testbed

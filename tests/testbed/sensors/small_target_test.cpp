@@ -1,0 +1,169 @@
+// Targets much smaller than a sonar's cells: heard at any place, with the level of the sonar
+// equation, at the coarsest sampling.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/core/files.hpp"
+#include "engine/core/random.hpp"
+#include "sonar/head_pattern.hpp"
+#include "sonar/quality.hpp"
+#include "testbed/sensors/small_targets.hpp"
+#include "tests/testbed/sensors/sonar_pings.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+constexpr double kRadius_m = 0.005, kNearest_m = 7.0, kApart_m = 0.1, kMargin_m = 0.4;
+constexpr int kPlaces = 60;
+constexpr double kSound_m_s = 1500.0;
+
+// A device of assets/sensors over 7 to 13 m with its own bins, beams and pattern, at draft.
+scene::Sonar device_of(const std::string& preset) {
+  const test::ScratchFolder scratch;
+  const auto file = scratch.path() / "scene.toml";
+  EXPECT_TRUE(write_text(file, fmt::format("[[sonars]]\nname = \"sonar\"\nquality = \"draft\"\n"
+                                           "include = \"{}/assets/sensors/{}.toml\"\n",
+                                           test::source_dir().string(), preset))
+                  .ok());
+  const auto scene = scene::load_scene(file);
+  EXPECT_TRUE(scene.ok()) << scene.error().message;
+  scene::Sonar sonar = scene->sonars[0];
+  const double bin_m = (sonar.range_max_m - sonar.range_min_m) / sonar.bins_range;
+  sonar.range_min_m = kNearest_m - kMargin_m;
+  sonar.range_max_m = kNearest_m + kPlaces * kApart_m + kMargin_m;
+  sonar.bins_range =
+      static_cast<std::uint32_t>(std::round((sonar.range_max_m - sonar.range_min_m) / bin_m));
+  // A fifth of the beams is as good as all.
+  sonar.bins_azimuth /= 5;
+  sonar.azimuth_rad /= 5.0;
+  sonar.terms.water.sound_speed_m_s = kSound_m_s;
+  sonar.terms.level = plain_level();
+  return sonar;
+}
+
+struct Ball {
+  double range_m, azimuth_rad, elevation_rad;
+};
+
+// No two places have the same part of a cell.
+std::vector<Ball> balls(const scene::Sonar& sonar) {
+  std::vector<Ball> out;
+  for (int i = 0; i < kPlaces; ++i) {
+    const auto golden = [&](double step) { return std::fmod(0.5 + i * step, 1.0) - 0.5; };
+    out.push_back({kNearest_m + i * kApart_m, 0.8 * sonar.azimuth_rad * golden(0.7548776662),
+                   0.7 * sonar.elevation_rad * golden(0.5698402910)});
+  }
+  return out;
+}
+
+scene::Scene scene_of(const scene::Sonar& sonar, const std::vector<Ball>& places) {
+  scene::Scene scene;
+  for (const Ball& ball : places)
+    scene.objects.push_back(
+        object_of(scene, scene::make_sphere(kRadius_m, 32),
+                  ball.range_m * sonar::direction(ball.azimuth_rad, ball.elevation_rad)));
+  scene.sonars = {sonar};
+  return scene;
+}
+
+// Each ball's energy over all beams, over what SL - 40 log r - 2 alpha r + 10 log a^2 / 4 gives
+// through the patterns; 0: silent.
+std::vector<double> over_closed_form(const SonarFrame& frame, const scene::Sonar& sonar,
+                                     const std::vector<Ball>& places) {
+  const auto patterns = sonar::head_patterns(sonar);
+  EXPECT_TRUE(patterns.ok());
+  const double bin_m = frame.grid.range_step_m();
+  const double pulse_m = 1.5 * kSound_m_s / (2.0 * sonar.terms.range_spread->bandwidth_hz);
+  std::vector<double> out;
+  for (const Ball& ball : places) {
+    double heard = 0.0, beams = 0.0;
+    for (std::uint32_t row = 0; row < frame.image.n_range; ++row) {
+      if (std::abs(frame.grid.range_m(row) - ball.range_m) > kApart_m / 2.0) continue;
+      for (std::uint32_t c = 0; c < frame.image.n_azimuth; ++c)
+        heard += frame.image.intensity[std::size_t{row} * frame.image.n_azimuth + c];
+    }
+    for (std::uint32_t c = 0; c < frame.image.n_azimuth; ++c) {
+      const double a =
+          patterns->across(ball.azimuth_rad - frame.grid.azimuth_rad(c), frame.grid.azimuth_rad(c));
+      beams += a * a;
+    }
+    const double r = ball.range_m - kRadius_m / 2.0;
+    const double echo = std::pow(10.0, 20.0 - 0.2 * 0.3 * r) / std::pow(r, 4) * kRadius_m *
+                        kRadius_m / 4.0 * patterns->power(ball.azimuth_rad, ball.elevation_rad) *
+                        beams;
+    out.push_back(heard * bin_m / pulse_m / echo);
+  }
+  return out;
+}
+
+class SmallTargets : public test::GpuTest, public testing::WithParamInterface<const char*> {};
+
+TEST_P(SmallTargets, ABallOfOneCentimetreIsHeardAtItsLevelInEveryPlace) {
+  scene::Sonar sonar = device_of(GetParam());
+  const std::vector<Ball> places = balls(sonar);
+  const scene::Scene scene = scene_of(sonar, places);
+  ASSERT_TRUE(sonar::apply_quality(sonar).ok());
+  const auto ratios = over_closed_form(ping(device(), scene), sonar, places);
+  double mean = 0.0, least = 1e9, most = 0.0;
+  for (const double ratio : ratios) {
+    mean += ratio / kPlaces;
+    least = std::min(least, ratio);
+    most = std::max(most, ratio);
+  }
+  fmt::print("{}: {:.2f} to {:.2f} dB, mean {:.2f} dB of the closed form\n", GetParam(),
+             10.0 * std::log10(least), 10.0 * std::log10(most), 10.0 * std::log10(mean));
+  EXPECT_GT(10.0 * std::log10(least), -1.0);
+  EXPECT_LT(10.0 * std::log10(most), 1.0);
+  EXPECT_NEAR(10.0 * std::log10(mean), 0.0, 0.3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, SmallTargets,
+                         testing::Values("oculus_m1200d", "oculus_m750d", "gemini_720is",
+                                         "blueview_p900_45"),
+                         [](const auto& info) { return std::string(info.param); });
+
+using SmallTargetsOnABottom = test::GpuTest;
+
+// What is drawn larger grows away from the bottom, which would hide half of it.
+TEST_F(SmallTargetsOnABottom, ABallThatLiesOnTheBottomIsAsLoudAsOneInOpenWater) {
+  scene::Sonar sonar = device_of("blueview_p900_45");
+  sonar.bins_azimuth /= 4;
+  sonar.azimuth_rad /= 4.0;
+  const std::vector<Ball> places{{8.0, 0.01, radians(-4.0)}};
+  scene::Scene scene = scene_of(sonar, places);
+  ASSERT_TRUE(sonar::apply_quality(sonar).ok());
+  const double open = over_closed_form(ping(device(), scene), sonar, places).front();
+  const double bottom_m = 8.0 * std::sin(radians(-4.0)) - kRadius_m;
+  scene.objects.push_back(
+      object_of(scene, scene::make_box(Vec3(60.0, 1.0, 60.0)), {0.0, bottom_m - 0.5, 0.0}));
+  scene.objects.back().backscatter_db = -150.0;
+  const double lying = over_closed_form(ping(device(), scene), sonar, places).front();
+  EXPECT_NEAR(10.0 * std::log10(lying / open), 0.0, 0.7);
+}
+
+TEST(SmallTargetPlaces, NeighboursGrowNoFartherThanToEachOther) {
+  // One above another, one beside, one behind.
+  const auto place = [](double azimuth, double elevation) {
+    return render::DrawnPlace{
+        azimuth,         0.02, 0.001, elevation - 0.001, elevation - 0.001, elevation + 0.001,
+        elevation + 0.05};
+  };
+  render::DrawnPlace upright[] = {place(0.0, 0.0), place(0.0, 0.01)};
+  render::keep_apart(upright);
+  EXPECT_LE(upright[0].high_rad, upright[1].low_rad + 1e-12);
+  EXPECT_GE(upright[0].high_rad, upright[0].own_high_rad);
+  EXPECT_EQ(upright[1].high_rad, 0.06);
+  render::DrawnPlace level[] = {place(0.0, 0.0), place(0.01, 0.0)};
+  render::keep_apart(level);
+  EXPECT_LE(level[0].half_wide_rad + level[1].half_wide_rad, 0.01 + 1e-12);
+  render::DrawnPlace behind[] = {place(0.0, 0.0), place(0.0005, 0.0005)};
+  render::keep_apart(behind);
+  for (const render::DrawnPlace& p : behind) {
+    EXPECT_EQ(p.high_rad, p.own_high_rad);
+    EXPECT_EQ(p.half_wide_rad, p.own_half_wide_rad);
+  }
+}
+
+}  // namespace
+}  // namespace neritic::testbed
