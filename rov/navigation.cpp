@@ -105,7 +105,7 @@ void correct_by_dvl(const NavigationModel& model, const DvlReading& reading, Cor
 void correct_by_fix(const NavigationModel& model, const UsblReading& reading, double age_s,
                     Corrections& out, const NavigationState& state) {
   if (reading.heard == 0) return;
-  if (out.refuse(Aid::kUsbl, is_within(reading.position_ned_m, kMostFix_m))) return;
+  if (out.refuse(Aid::kUsbl, is_finite_within(reading.position_ned_m, kMostFix_m))) return;
   out.prepare();
   out.apply(Aid::kUsbl, model.usbl->rate_hz, fix_measurement(model, state, reading, age_s));
 }
@@ -167,8 +167,9 @@ NavigationState start_navigation(const NavigationModel& model, const SensorReadi
   NavigationState state;
   state.time_s = state.imu_s = time_s;
   const ImuReading first = in_body(model, readings.imu.value);
-  const bool felt = readings.imu.count > 0 && is_within(first.specific_force_m_s2, kMostForce_m_s2) &&
-                    is_within(first.angular_rad_s, kMostTurning_rad_s);
+  const bool felt = readings.imu.count > 0 &&
+                    is_finite_within(first.specific_force_m_s2, kMostForce_m_s2) &&
+                    is_finite_within(first.angular_rad_s, kMostTurning_rad_s);
   if (felt) state.imu = first;
   state.imu_used = readings.imu.count;
   // Groves 2013, eq. 5.101: roll and pitch of a body that feels gravity alone.
@@ -208,8 +209,8 @@ void update_navigation(const NavigationModel& model, const SensorReadings& readi
   if (readings.imu.count != state.imu_used) {
     state.imu_used = readings.imu.count;
     const ImuReading next = in_body(model, readings.imu.value);
-    const bool good = is_within(next.specific_force_m_s2, kMostForce_m_s2) &&
-                      is_within(next.angular_rad_s, kMostTurning_rad_s);
+    const bool good = is_finite_within(next.specific_force_m_s2, kMostForce_m_s2) &&
+                      is_finite_within(next.angular_rad_s, kMostTurning_rad_s);
     if (good) {
       // After a silence the last reading says nothing of the time between.
       if (time_s - state.imu_s > 2.0 * kHeldPeriods / model.imu.rate_hz) {

@@ -12,19 +12,20 @@ namespace {
 constexpr double kSingular = 1e-9;
 constexpr double kLargest = 1e9;  // of any parameter, in SI units
 
-bool is_within(double value, double least) {
+bool within(double value, double least) {
   return value >= least && value <= kLargest;
 }
 Status check_scalars(const VehicleParameters& p) {
   if (!(p.mass_kg > 0.0 && p.mass_kg <= kLargest))
     return refusal("mass_kg", fmt::format("{}", p.mass_kg), "a number in (0, 1e9]");
-  if (!is_within(p.weight_n, 0.0))
+  if (!within(p.weight_n, 0.0))
     return refusal("weight_n", fmt::format("{}", p.weight_n), "a number in [0, 1e9]");
-  if (!is_within(p.buoyancy_n, 0.0))
+  if (!within(p.buoyancy_n, 0.0))
     return refusal("buoyancy_n", fmt::format("{}", p.buoyancy_n), "a number in [0, 1e9]");
-  if (!is_within(p.gravity_centre_m, 100.0) || !is_within(p.buoyancy_centre_m, 100.0))
-    return refusal(is_within(p.gravity_centre_m, 100.0) ? "buoyancy_centre_m" : "gravity_centre_m",
-                   "another point", "one within 100 m of the body's origin");
+  if (!is_finite_within(p.gravity_centre_m, 100.0) || !is_finite_within(p.buoyancy_centre_m, 100.0))
+    return refusal(
+        is_finite_within(p.gravity_centre_m, 100.0) ? "buoyancy_centre_m" : "gravity_centre_m",
+        "another point", "one within 100 m of the body's origin");
   return {};
 }
 
@@ -41,13 +42,13 @@ Status check_matrices(const VehicleParameters& p, const Mat6& rigid, const Mat6&
                    "a sum with the rigid body's mass matrix that is not positive definite",
                    "a positive definite one");
   for (std::size_t i = 0; i < 6; ++i) {
-    if (!is_within(p.added_mass(i, i), 0.0))
+    if (!within(p.added_mass(i, i), 0.0))
       return refusal("added_mass", fmt::format("{} on its diagonal", p.added_mass(i, i)),
                      "a number in [0, 1e9]");
-    if (!is_within(p.linear_damping(i, i), 0.0))
+    if (!within(p.linear_damping(i, i), 0.0))
       return refusal("linear_damping", fmt::format("{} on its diagonal", p.linear_damping(i, i)),
                      "a number in [0, 1e9]");
-    if (!is_within(p.quadratic_damping[i], 0.0))
+    if (!within(p.quadratic_damping[i], 0.0))
       return refusal("quadratic_damping", fmt::format("{}", p.quadratic_damping[i]),
                      "a number in [0, 1e9]");
   }
@@ -62,10 +63,10 @@ Status check_thrusters(const std::vector<Thruster>& thrusters) {
                    fmt::format("up to {}", kMaxThrusters));
   for (std::size_t i = 0; i < thrusters.size(); ++i) {
     const Thruster& t = thrusters[i];
-    if (!is_within(t.position_m, 100.0))
+    if (!is_finite_within(t.position_m, 100.0))
       return refusal(fmt::format("thrusters[{}].position_m", i), "another point",
                      "one within 100 m");
-    if (!is_within(t.direction, 2.0) || glm::length(t.direction) < 0.5)
+    if (!is_finite_within(t.direction, 2.0) || glm::length(t.direction) < 0.5)
       return refusal(fmt::format("thrusters[{}].direction", i),
                      fmt::format("({}, {}, {})", t.direction.x, t.direction.y, t.direction.z),
                      "a unit vector");

@@ -83,7 +83,7 @@ inline bool is_finite(const Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 // Finite, and at most so long.
-inline bool is_within(const Vec3& v, double most) {
+inline bool is_finite_within(const Vec3& v, double most) {
   return is_finite(v) && glm::length(v) <= most;
 }
 

@@ -426,7 +426,7 @@ TEST_F(PipelineTest, TheShelfKeepsSoManyThatNobodyUses) {
   const auto get = [&](int i) {
     return shelf.get(fmt::format("{}", i), [&]() -> Result<PipelineShelf::Made> {
       ++made;
-      return std::make_shared<MadePipeline>();
+      return PipelineShelf::Made(std::make_shared<MadePipeline>());
     });
   };
   NERITIC_ASSERT_OK(const auto used, get(0));
