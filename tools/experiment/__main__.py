@@ -68,12 +68,15 @@ def every(asked):
     folder(asked.out)
     names, told, failed = scenario.names(), [], []
     for i, name in enumerate(names):
+        line = ""
         try:
             told.append(one(scenario.path_of(name), asked, os.path.join(asked.out, name)))
         except scenario.Failed as error:
             failed.append((name, str(error)))
-            print(f"neritic: {name}: {error}", file=sys.stderr)
-        report.index(told, failed, names[i + 1:], asked.out)
+            line = f"neritic: {name}: {error}"
+        report.index(told, failed, names[i + 1:], asked.out)  # a full disk ends it here, with one line
+        if line:
+            print(line, file=sys.stderr)
     return told, failed
 
 
