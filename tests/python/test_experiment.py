@@ -118,6 +118,54 @@ class Crops(unittest.TestCase):
                 self.assertEqual(bool((x[i, 0] > 1.5).float().mean() > 0.02 and x[i, 0].max() - x[i, 0].mean() > 1.5 and y[i] == 1), bool(y[i] == 1))
 
 
+FAKE = """import numpy as np
+CLASSES = ["nothing", "bar"]
+class Maker:
+    def __init__(self, tools, split, seed):
+        self.rng = np.random.Generator(np.random.Philox(key=seed + len(split)))
+    def one(self, name):
+        picture = self.rng.integers(0, 60, (64, 64)).astype(np.uint8)
+        picture[26:36] += 150 * (name == "bar")
+        return picture, 1.0
+    def close(self):
+        pass
+"""
+
+
+@unittest.skipIf(torch is None or cv2 is None, "no PyTorch or no OpenCV here")
+class Training(unittest.TestCase):
+    def test_weights_are_made_again_to_the_bit_and_read_by_opencv(self):
+        import importlib.util
+        import training
+        spec = importlib.util.spec_from_file_location("experiment_main", os.path.join(TOOLS, "__main__.py"))
+        program = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(program)
+        before = training.STEPS, training.LOOKS, training.EACH, training.EACH_CHOOSE
+        training.STEPS, training.LOOKS, training.EACH, training.EACH_CHOOSE = 12, 2, 8, 4
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "fake_crops.py"), "w") as file:
+                file.write(FAKE)
+            sys.path.insert(0, folder)
+            try:
+                import fake_crops
+                program.TRAINED["train_fake"] = ("fake", fake_crops, 1)
+                made = []
+                for workers in (1, 2):
+                    out = os.path.join(folder, str(workers))
+                    asked = SimpleNamespace(name="train_fake", out=out, program="none", runs=10, seed=3, workers=workers, quiet=True)
+                    self.assertEqual(program.train(asked), 0)
+                    with open(os.path.join(out, "fake.onnx"), "rb") as file:
+                        made.append(file.read())
+                    self.assertEqual(sorted(os.listdir(out)), ["fake.json", "fake.onnx"])
+                self.assertEqual(*made)
+                look = looking.Detector(os.path.join(out, "fake.onnx"))
+                bar = fake_crops.Maker(None, "test", 99)
+                self.assertGreater(look.shares(bar.one("bar")[0])[1], look.shares(bar.one("nothing")[0])[1] + 0.2)
+            finally:
+                sys.path.remove(folder)
+                training.STEPS, training.LOOKS, training.EACH, training.EACH_CHOOSE = before
+
+
 class Pages(unittest.TestCase):
     def test_the_page_of_all_tells_what_failed_and_what_is_missing(self):
         criterion = {"measure": "m", "statistic": "median", "where": {}, "less": None, "found": 0.5, "n": 3, "at_most": 1.0,

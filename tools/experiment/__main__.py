@@ -68,19 +68,22 @@ def every(asked):
     folder(asked.out)
     names, told, failed = scenario.names(), [], []
     for i, name in enumerate(names):
+        line = ""
         try:
             told.append(one(scenario.path_of(name), asked, os.path.join(asked.out, name)))
         except scenario.Failed as error:
             failed.append((name, str(error)))
-            print(f"neritic: {name}: {error}", file=sys.stderr)
-        report.index(told, failed, names[i + 1:], asked.out)
+            line = f"neritic: {name}: {error}"
+        report.index(told, failed, names[i + 1:], asked.out)  # a full disk ends it here, with one line
+        if line:
+            print(line, file=sys.stderr)
     return told, failed
 
 
 def train(asked):
     name, maker, channels = TRAINED[asked.name]
     folder(asked.out)
-    share = training.train(name, maker.Maker, maker.CLASSES, channels, asked.program, asked.runs, 1 if asked.seed is None else asked.seed, asked.workers,
+    share = training.train(name, maker, maker.CLASSES, channels, asked.program, asked.runs, 1 if asked.seed is None else asked.seed, asked.workers,
                            asked.out, asked.quiet)
     if not asked.quiet:
         print(f"{asked.out}/{name}.onnx: {100 * share:.1f} % of the crops kept aside")
@@ -138,7 +141,8 @@ def main():
         print(f"neritic: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        print("neritic: experiment: interrupted; finished runs are kept, --resume goes on", file=sys.stderr)
+        kept = "nothing is kept" if asked.name in TRAINED else "finished runs are kept, --resume goes on"
+        print(f"neritic: experiment: interrupted; {kept}", file=sys.stderr)
         return 130
 
 

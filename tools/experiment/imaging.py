@@ -195,7 +195,7 @@ def figures(scenario, results, style):
     style.legend(top)
     for i, (name, words, bound) in enumerate((("mask_iou", "mask: overlap over union", 0.9),
                                               ("columns_within_2_bins", "columns within 2 bins", 0.95))):
-        ax = style.area(fig, 70 + 420 * i, 380, 450 + 420 * i, 590)
+        ax = style.area(fig, 70 + 430 * i, 380, 430 + 440 * i, 590)
         x = [r["settings"]["diver_range_m"] for r in done]
         ax.plot(x, [r["measures"][name] for r in done], "o", color=style.BLUE, ms=5, mec=style.INK, mew=0.6)
         ax.axhline(bound, color=style.INK, lw=0.9, ls="--")

@@ -6,6 +6,7 @@ import os
 
 import numpy as np
 
+import report
 from scenario import SHIPPED, Setting
 
 SETTINGS = {
@@ -146,33 +147,46 @@ def figures(scenario, results, style):
     done = [r for r in results if r["series"]]
     if not done:
         return
+    flat = [r for r in done if "angle_deg" in r["series"]]
     fig = style.figure(900, 620)
-    line = style.area(fig, 70, 50, 870, 280)
-    swell = [r for r in done if r["settings"]["floor"] == "waves"] or done
-    x = np.linspace(0, swell[0]["settings"]["length_m"], 1000)
-    line.plot(x, depth_at(swell[0]["settings"], x), color=style.INK, lw=3.2, alpha=0.35, label="true")
-    line.plot(swell[0]["series"]["x"], swell[0]["series"]["depth"], ".", ms=2.5, color=style.BLUE, label="soundings")
-    line.invert_yaxis()
-    line.set_xlabel("along the line, m")
-    line.set_ylabel("depth, m")
-    style.title(line, "Soundings within 0.5 m of the middle")
-    style.legend(line)
-    left = style.area(fig, 70, 360, 450, 570)
-    names = [", ".join(str(v) for v in r["condition"].values()) or "all" for r in done]
-    for name, dx, hue in (("rmse_m", -0.2, style.BLUE), ("bias_m", 0.2, style.ORANGE)):
-        left.bar(np.arange(len(done)) + dx, [1000 * r["measures"][name] for r in done], 0.38, color=hue,
-                 edgecolor=style.INK, lw=0.6, label=name.removesuffix("_m"), hatch="//" if dx > 0 else None)
-    left.axhline(50, color=style.INK, lw=0.9, ls="--")
-    left.set_xticks(np.arange(len(done)), names, rotation=0 if len(done) < 5 else 90)
-    left.set_ylabel("error of the chart, mm")
-    style.title(left, "Chart")
-    style.legend(left)
-    right = style.area(fig, 520, 360, 870, 570)
-    for i, r in enumerate([r for r in done if "angle_deg" in r["series"]]):
-        right.plot(r["series"]["angle_deg"], r["series"]["beam_depth"], ".", ms=2.5, color=style.color(i),
-                   label=", ".join(str(v) for v in r["condition"].values()) or None)
-    right.invert_yaxis()
-    right.set_xlabel("angle of the beam, degrees")
-    right.set_ylabel("depth, m")
-    style.title(right, "Flat floor")
+    _line(style.area(fig, 70, 50, 870, 280), [r for r in done if r["settings"]["floor"] == "waves"] or done, style)
+    _errors(style.area(fig, 70, 360, 450 if flat else 870, 545), done, style)
+    if flat:
+        _beams(style.area(fig, 520, 360, 870, 570), flat, style)
     yield "profiling.png", "The line's soundings, the chart's errors by condition, and the flat floor by beam", fig
+
+
+def _line(ax, runs, style):
+    """The first condition's soundings, and the last one's where it is another."""
+    x = np.linspace(0, runs[0]["settings"]["length_m"], 1000)
+    ax.plot(x, depth_at(runs[0]["settings"], x), color=style.INK, lw=3.2, alpha=0.35, label="true")
+    for i, r in enumerate([runs[0], runs[-1]] if runs[-1]["condition"] != runs[0]["condition"] else runs[:1]):
+        ax.plot(r["series"]["x"], r["series"]["depth"], ".x"[i], ms=2.5 + i, mew=0.7, color=style.color(i), label=report.words(r["condition"]))
+    ax.invert_yaxis()
+    ax.set_xlabel("along the line, m")
+    ax.set_ylabel("depth, m")
+    style.title(ax, "Soundings within 0.5 m of the middle")
+    style.legend(ax)
+
+
+def _errors(ax, runs, style):
+    names = [report.words(r["condition"]).replace(", ", "\n") for r in runs]
+    for name, dx, hue in (("rmse_m", -0.2, style.BLUE), ("bias_m", 0.2, style.ORANGE)):
+        ax.bar(np.arange(len(runs)) + dx, [1000 * r["measures"][name] for r in runs], 0.38, color=hue,
+               edgecolor=style.INK, lw=0.6, label=name.removesuffix("_m"), hatch="//" if dx > 0 else None)
+    ax.axhline(50, color=style.INK, lw=0.9, ls="--")
+    ax.set_xticks(np.arange(len(runs)), names, rotation=0 if len(runs) < 5 else 90)
+    ax.set_ylabel("error of the chart, mm")
+    style.title(ax, "Chart")
+    style.legend(ax)
+
+
+def _beams(ax, runs, style):
+    for i, r in enumerate(runs):
+        ax.plot(r["series"]["angle_deg"], r["series"]["beam_depth"], ".x+"[i % 3], ms=2.5 + i % 3, mew=0.7, color=style.color(i),
+                label=report.words(r["condition"]))
+    ax.invert_yaxis()
+    ax.set_xlabel("angle of the beam, degrees")
+    ax.set_ylabel("depth, m")
+    style.title(ax, "Flat floor")
+    style.legend(ax)

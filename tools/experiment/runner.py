@@ -20,8 +20,7 @@ FORMAT = 2
 
 
 def _one(do, run, program):
-    """A worker process: one run. Its failure is a result, not the end of the others."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """One run. Its failure is a result, not the end of the others; Ctrl-C ends it where the worker is the main process."""
     begun, worked, folder = time.monotonic(), _processor_s(), ""
     try:
         with tempfile.TemporaryDirectory(prefix="neritic_experiment_") as folder:
@@ -151,14 +150,10 @@ def run_all(scenario, out, program, workers, resume, quiet):
 
 def _results(do, runs, program, workers):
     if workers <= 1 or len(runs) <= 1:
-        before = signal.getsignal(signal.SIGINT)
         for run in runs:
-            try:
-                yield _one(do, run, program)
-            finally:
-                signal.signal(signal.SIGINT, before)
+            yield _one(do, run, program)
         return
-    with concurrent.futures.ProcessPoolExecutor(workers) as pool:
+    with concurrent.futures.ProcessPoolExecutor(workers, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)) as pool:
         waiting = [pool.submit(_one, do, run, program) for run in runs]
         try:
             for done in concurrent.futures.as_completed(waiting):

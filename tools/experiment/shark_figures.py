@@ -97,4 +97,4 @@ def _power(ax, groups, spread, style):
     ax.axhline(0.8, color=style.INK, lw=0.9, ls="--")
     ax.set_ylim(0, 1.03)
     ax.set_xlabel("runs a group")
-    style.title(ax, "Power to tell 10 % more time to block (dots: by draws)", 8.5)
+    style.title(ax, "Power to tell 10 % more time (dots: by draws)")

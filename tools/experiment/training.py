@@ -6,9 +6,11 @@ the split "choose", in places that training has not, choose the best pass and th
 (Guo et al. 2017). Scenes of the split "test" are never opened here. DIR gets NAME.onnx, NAME.json.
 """
 import concurrent.futures
+import concurrent.futures.process
 import importlib
 import json
 import os
+import signal
 import tempfile
 
 import numpy as np
@@ -41,13 +43,19 @@ def _scene(name, program, split, seed, each):
 
 def gather(maker, program, split, scenes, seed, each, workers, told):
     """(pictures, classes) of all scenes, in order. They are not kept: minutes make them again."""
-    with concurrent.futures.ProcessPoolExecutor(max(1, workers)) as pool:
+    with concurrent.futures.ProcessPoolExecutor(max(1, workers), initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)) as pool:
         waiting = [pool.submit(_scene, maker.__name__, program, split, seed + i, each) for i in range(scenes)]
         out = []
-        for i, one in enumerate(waiting):
-            out.append(one.result())
-            if told and (i + 1) % 10 == 0:
-                print(f"{split}: {i + 1} of {scenes} scenes", flush=True)
+        try:
+            for i, one in enumerate(waiting):
+                out.append(one.result())
+                if told and (i + 1) % 10 == 0:
+                    print(f"{split}: {i + 1} of {scenes} scenes", flush=True)
+        except concurrent.futures.process.BrokenProcessPool:
+            raise Failed(f"{split}: a scene's process was killed, as where memory ends; --workers 1 needs less memory") from None
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
     return tuple(np.concatenate([made[i] for made in out]) for i in (0, 1))
 
 
