@@ -61,7 +61,7 @@ class Made {
     EXPECT_TRUE(executor.run(graph, **commands).ok());
     auto done = (*frames)->submit();
     EXPECT_TRUE(done.ok() && (*frames)->wait(*done).ok());
-    for (const std::uint16_t half : (*pin)->mapped<std::uint16_t>())
+    for (const std::uint16_t half : (*pin)->template mapped<std::uint16_t>())
       values_.push_back(glm::unpackHalf1x16(half));
     device.wait_idle();
   }
