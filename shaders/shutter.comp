@@ -43,10 +43,9 @@ void main() {
   }
   // The quickest of what is near passes over this pixel too.
   vec2 quickest = motion;
-  float reach = 0.5 * shutter.exposed;
-  for (int i = 0; i < 8; ++i) {
-    float angle = float(i) * 0.78539816;
-    vec2 seen = motion_at(inside(px + vec2(cos(angle), sin(angle)) * shutter.farthest_px * 0.25, at.z, size));
+  for (int i = 0; i < 12; ++i) {
+    float angle = float(i) * 1.57079633 + float(i / 4) * 0.52, out_px = i < 4 ? 4.0 : (i < 8 ? 12.0 : 36.0);
+    vec2 seen = motion_at(inside(px + vec2(cos(angle), sin(angle)) * out_px, at.z, size));
     if (dot(seen, seen) > dot(quickest, quickest)) quickest = seen;
   }
   vec4 sum = vec4(0.0);
