@@ -38,7 +38,9 @@ void main() {
   vec3 x;
   if ((kTerms & kCameraLens) != 0u) {
     plane = lens_undistort(camera.model, image, camera.k, camera.p);
-    x = bilinear(plane * camera.source_focal_px + camera.source_center_px, at.z);
+    x = bilinear(through_port(camera.port, camera.port_offset, plane) * camera.source_focal_px +
+                     camera.source_center_px,
+                 at.z);
   } else {
     x = texelFetch(hdr_image, at, 0).rgb;
   }

@@ -67,7 +67,7 @@ vec3 radiance_of(vec3 at, vec3 to_eye, vec3 albedo) {
     vec3 to_lamp = light.lamps[i].position - at;
     float distance_m = max(length(to_lamp), 0.05);
     to_lamp /= distance_m;
-    float cone = smoothstep(light.lamps[i].cos_outer, light.lamps[i].cos_inner, dot(-to_lamp, light.lamps[i].direction));
+    float cone = beam_of(i, dot(-to_lamp, light.lamps[i].direction));
     vec3 arriving = light.lamps[i].intensity_cd * cone / (distance_m * distance_m + 0.0025);
     if (light_has(kLightWater)) arriving *= exp(-min(light.beam_attenuation * distance_m, vec3(80.0)));
     sum += arriving * sphere_share(dot(to_lamp, to_eye));
@@ -96,7 +96,7 @@ void light_bubble(vec3 at, vec3 along, Sight sight) {
     vec3 way = light.lamps[i].position - at;
     float distance_m = max(length(way), 0.05);
     way /= distance_m;
-    float cone = smoothstep(light.lamps[i].cos_outer, light.lamps[i].cos_inner, dot(-way, light.lamps[i].direction));
+    float cone = beam_of(i, dot(-way, light.lamps[i].direction));
     vec3 arriving = light.lamps[i].intensity_cd * cone / (distance_m * distance_m + 0.0025);
     if (light_has(kLightWater))
       arriving *= exp(-min(light.beam_attenuation * distance_m, vec3(80.0)));
@@ -137,7 +137,7 @@ void main() {
   float loose = smoothstep(0.0015, 0.004, in_position.w);
   float swing = float(in_kind.y & 255u) * kWobbleTurn_rad;
   float aspect =
-      kBubbles ? clamp(bubble_aspect(in_position.w) * (1.0 + 0.18 * loose * sin(swing)), 0.25, 1.0)
+      kBubbles ? clamp(bubble_aspect(in_position.w) * (1.0 + 0.18 * loose * sin(swing)), 0.35, 1.0)
                : 1.0;
   float own = in_position.w * pow(aspect, -1.0 / 3.0) * pixels_m;
   float blur =
@@ -158,6 +158,8 @@ void main() {
     axis = dot(axis, axis) > 1e-8 ? normalize(axis) : vec2(0.0, -1.0);
     float tilt = 0.35 * loose * cos(swing + float((in_kind.y >> 8) & 255u) * kWobbleTurn_rad) *
                  (1.0 - to_eye.y * to_eye.y);
+    // No flatter than a pixel.
+    seen = max(seen, min(0.9 / radius, 1.0));
     upright = vec3(cos(tilt) * axis.x - sin(tilt) * axis.y, sin(tilt) * axis.x + cos(tilt) * axis.y,
                    seen);
   } else {

@@ -25,6 +25,7 @@ layout(set = 0, binding = kShadeWaves, scalar) uniform Sea { Waves sea; };
 
 layout(set = 0, binding = kShadeSeen) uniform texture2DArray seen_image;
 layout(set = 0, binding = kShadeCaustics) uniform sampler2DArray caustics_image;
+layout(set = 0, binding = kShadeShafts) uniform texture2DArray shafts_image;
 layout(set = 0, binding = kShadeLampMaps) uniform texture2DArray lamp_maps;
 layout(set = 0, binding = kShadeLampShadows, scalar) uniform Shadows { LampShadows lamp_shadows; };
 
@@ -37,7 +38,8 @@ bool light_has(uint term) { return (kTerms & term) != 0u; }
 uint lamp_count() { return kLamps; }
 uint glow_samples() { return kGlowSamples; }
 
-#include "shared/caustics.h"
+#include "shared/caustic_light.glsl"
+#include "shared/shafts.h"
 #include "shared/surface.glsl"
 #include "shared/sea_surface.glsl"
 #include "shared/visibility.glsl"
@@ -62,24 +64,24 @@ float lamp_seen(uint lamp, vec3 position, vec3 normal) {
   return lamp_shadows.layer[lamp] >= kMaxLampShadows || clip.w < lamp_shadows.near_m ? 1.0 : seen;
 }
 
-// The sun's beam at a place over that under flat water, by the levels above and below it. The part that water has
-// scattered (b) has lost the net, and where a pixel is as wide as its meshes it has their mean.
-float caustic_at(vec3 position, float pixel_m) {
-  if (!light_has(kLightCaustics)) return 1.0;
-  float depth_m = light.origin_depth_m - position.y;
-  vec2 surface = position.xz + light.to_sun.xz * (depth_m / light.to_sun.y) + light.caustic_origin_m;
-  vec2 uv = surface / light.caustic_tile_m;
-  float level = clamp(log2(max(depth_m, 1e-3) / kCausticFirst_m) / log2(kCausticStep), 0.0, float(kCausticLevels - 1u));
-  // One sample has both levels; each weighs what the place is near to it.
-  float layer = min(floor(level / float(kCausticLayerStep)), float(kCausticLayers - 1u));
-  vec4 levels = textureLod(caustics_image, vec3(uv, layer), 0.0);
-  vec4 weights = max(1.0 - abs(level - float(kCausticLayerStep) * layer - vec4(0.0, 1.0, 2.0, 3.0)), vec4(0.0));
-  float net = dot(levels, weights);
-  float scattered = (light.particle_scattering.g + light.water_scattering.g) * max(depth_m, 0.0) / light.sun_cosine;
-  float texel_m = light.caustic_tile_m / float(textureSize(caustics_image, 0).x);
-  float kept = exp(-min(scattered, 80.0)) * clamp(depth_m / kCausticFirst_m, 0.0, 1.0) *
-               clamp(1.5 - pixel_m / (4.0 * texel_m), 0.0, 1.0);
-  return 1.0 + (net - 1.0) * kept;
+// The shafts image at a pixel: between its four nearest, the farther off in distance the less.
+float lit_at(ivec3 at, float planar_m) {
+  if (!light_has(kLightShafts)) return 1.0;
+  ivec2 shaft_size = textureSize(shafts_image, 0).xy;
+  // Its pixel (x, y) was made for the picture's kShaftStep times (x, y) and half a step.
+  vec2 place = max((vec2(at.xy) - float(kShaftStep / 2u)) / float(kShaftStep), vec2(0.0));
+  ivec2 corner = ivec2(place);
+  vec2 part = place - vec2(corner);
+  float own = visibility_distance(planar_m);
+  vec2 sum = vec2(0.0);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    ivec2 offset = ivec2(i & 1, i >> 1);
+    vec4 seen = texelFetch(shafts_image, ivec3(min(corner + offset, shaft_size - 1), at.z), 0);
+    vec2 w = mix(1.0 - part, part, vec2(offset));
+    sum +=
+        vec2(seen.r, 1.0) * (w.x * w.y * (max(1.0 - abs(seen.a - own) * 20.0, 0.0) + 1e-3) + 1e-6);
+  }
+  return sum.x / sum.y;
 }
 
 // The visibility image at a pixel: between its four nearest, the farther off in distance the less.
@@ -161,7 +163,7 @@ void main() {
   } else if (!hit) {
     radiance = beyond(eye_depth_m, direction);
   }
-  Sight sight = look_through(eye_depth_m, direction, sight_m);
+  Sight sight = look_through(eye_depth_m, direction, sight_m, lit_at(at, planar_m));
   if (light_has(kLightForwardScatter)) {
     // How much lighter than the water there, with what scatters forwards on the way, and the distance.
     vec3 kept = (radiance - sight.water) * kept_forwards(sight.length_m) * light.exposure;

@@ -8,12 +8,13 @@ namespace neritic::render {
 Result<graph::ImageHandle> Renderer::declare_forward(
     graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle hdr,
     const GBuffer& gbuffer, const GpuScene& scene, const DeformedGeometry& deformed,
-    const ViewSet& views, const DrawList& draws, const shared::Lighting& lighting) {
+    const ViewSet& views, const DrawList& draws, const shared::Lighting& lighting,
+    std::uint32_t inscatter_samples) {
   if (draws.blended.empty()) return hdr;
   std::vector<MaskedDraws> masked;
   for (const std::uint32_t mask : view_masks_of(gbuffer.layers, device_)) {
     NERITIC_TRY(PreparedDraws prepared, prepare(scene, draws, draws.blended, GBufferKind::kSurface,
-                                                true, false, false, mask));
+                                                true, false, false, mask, {}, inscatter_samples));
     masked.push_back({mask, std::move(prepared)});
   }
   struct Data {

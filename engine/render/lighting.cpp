@@ -197,9 +197,16 @@ void add_lamp(shared::Lighting& light, const scene::Lamp& lamp, const Pose& pose
   spot.position = Vec3f(pose.position_m - origin_m);
   spot.direction = Vec3f(pose.rotation * Vec3(0, 0, -1));
   spot.intensity_cd = lamp.color * static_cast<float>(lamp.intensity_cd);
+  if (lamp.profile) {
+    static_assert(scene::LampProfile::kSteps == shared::kProfileSteps);
+    light.terms |= shared::kLightProfiles;
+    spot.profiled = 1;
+    std::ranges::copy(lamp.profile->share, spot.profile);
+  }
   spot.cos_inner = static_cast<float>(std::cos(lamp.inner_cone_rad));
   spot.cos_outer =
       static_cast<float>(std::cos(std::max(lamp.outer_cone_rad, lamp.inner_cone_rad + 1e-3)));
+  if (lamp.profile) spot.cos_outer = static_cast<float>(std::cos(lamp.outer_cone_rad));
 }
 
 // Further away a lamp of 1e9 cd, the brightest that is read, gives a thousandth of a lux.
@@ -308,7 +315,9 @@ std::string names_of_terms(const shared::Lighting& lighting) {
       {shared::kLightLampShadows, "shadows of lamps"},
       {shared::kLightForwardScatter, "forward scatter"},
       {shared::kLightWaves, "waves"},
-      {shared::kLightMurk, "murk"}};
+      {shared::kLightMurk, "murk"},
+      {shared::kLightShafts, "light shafts"},
+      {shared::kLightProfiles, "beam profiles"}};
   std::vector<std::string> names;
   for (const auto& [bit, name] : kNames)
     if (lighting.terms & bit) names.emplace_back(name);

@@ -21,7 +21,9 @@
 #include "engine/render/shadow_maps.hpp"
 #include "engine/render/water_passes.hpp"
 #include "shared/camera.h"
+#include "shared/exposure.h"
 #include "shared/lighting.h"
+#include "shared/shafts.h"
 #include "shared/waves.h"
 
 namespace neritic::render {
@@ -71,6 +73,7 @@ struct DeformedGeometry {
 struct LightImages {
   graph::ImageHandle seen;  // of sun, sky and surroundings (shaders/visibility.comp)
   graph::ImageHandle caustics;
+  graph::ImageHandle shafts;  // of the sun's light in the water (shaders/shafts.comp)
   graph::ImageHandle lamp_maps;
   shared::LampShadows lamp_shadows{};  // of lamp_maps
 };
@@ -88,6 +91,14 @@ struct ShadeInputs {
   const shared::Waves* waves = nullptr;  // with the term kLightWaves
   std::uint32_t visibility_step = 2;     // of light.seen
   std::uint32_t inscatter_samples = 4;   // of a lamp's beam along a sight
+};
+
+// What light shafts come from: the sun's maps and the caustics, either of which may be empty.
+struct ShaftInputs {
+  shared::VisibilityParams sun{};
+  std::uint32_t cascade_count = 0;
+  graph::ImageHandle cascades, caustics;
+  shared::ShaftParams params{};
 };
 
 // Where depth maps of lights are drawn: into layers of an image that is there, over what it has or
@@ -157,6 +168,11 @@ class Renderer {
   Result<graph::ImageHandle> declare_caustics(graph::FrameGraph& graph,
                                               const shared::CausticsParams& params,
                                               const std::string& name = "caustics");
+  // How much of the sun's light gets to the water along sights, a pixel of every kShaftStep.
+  Result<graph::ImageHandle> declare_shafts(graph::FrameGraph& graph, const std::string& prefix,
+                                            const GBuffer& gbuffer, const ViewSet& views,
+                                            const shared::Lighting& lighting,
+                                            const ShaftInputs& inputs);
   // HDR picture of a surface G-buffer.
   Result<graph::ImageHandle> declare_shade(graph::FrameGraph& graph, const std::string& prefix,
                                            const ShadeInputs& inputs);
@@ -166,13 +182,22 @@ class Renderer {
                                              const GpuScene& scene,
                                              const DeformedGeometry& deformed, const ViewSet& views,
                                              const DrawList& draws,
-                                             const shared::Lighting& lighting);
+                                             const shared::Lighting& lighting,
+                                             std::uint32_t inscatter_samples = 4);
   // The passes of the scene's water, between forward and the display picture.
   WaterPasses& water() { return water_; }
   // A display picture of another size: between its four nearest pixels.
   Result<graph::ImageHandle> declare_resize(graph::FrameGraph& graph, const std::string& prefix,
                                             graph::ImageHandle color, std::uint32_t width,
                                             std::uint32_t height, std::uint32_t layers);
+  // Depth of field of the picture, by the G-buffer's depth; motion blur and rolling shutter, by its
+  // motion.
+  Result<graph::ImageHandle> declare_focus(graph::FrameGraph& graph, const std::string& prefix,
+                                           graph::ImageHandle hdr, const GBuffer& gbuffer,
+                                           const shared::FocusParams& params);
+  Result<graph::ImageHandle> declare_shutter(graph::FrameGraph& graph, const std::string& prefix,
+                                             graph::ImageHandle hdr, const GBuffer& gbuffer,
+                                             const shared::ShutterParams& params);
   // Applies a lens and an image sensor to the picture, for as many pixels as the camera has.
   // terms: kCamera... bits.
   Result<graph::ImageHandle> declare_camera(graph::FrameGraph& graph, const std::string& prefix,
@@ -202,10 +227,17 @@ class Renderer {
                                             const PictureFilter& filter, gpu::Pipeline& pipeline,
                                             graph::ImageHandle in, std::uint32_t width,
                                             std::uint32_t height, std::uint32_t layers);
+  // Focus or shutter: a picture, another image of the G-buffer, and numbers.
+  template <class Params>
+  Result<graph::ImageHandle> declare_exposure(graph::FrameGraph& graph, const std::string& prefix,
+                                              const PictureFilter& filter, gpu::Pipeline& pipeline,
+                                              graph::ImageHandle hdr, graph::ImageHandle other,
+                                              const GBuffer& gbuffer, const Params& params);
   enum class RasterStage { kGeometry, kGeometryMasked, kShape, kSurface, kForward };
-  // stage, topology, motion, emissive, clipped, view mask, the material's flags, parts.
+  // stage, topology, motion, emissive, clipped, view mask, the material's flags, parts; of the
+  // forward stage samples of inscatter, else 0.
   using RasterKey = std::tuple<RasterStage, VkPrimitiveTopology, bool, bool, bool, std::uint32_t,
-                               std::uint32_t, GBufferParts>;
+                               std::uint32_t, GBufferParts, std::uint32_t>;
   explicit Renderer(gpu::Device& device) : device_(device), water_(device) {}
   Result<const gpu::Pipeline*> raster_pipeline(const RasterKey& key);
   // The pipelines that a list of draws needs, made before the pass records.
@@ -222,7 +254,8 @@ class Renderer {
   Result<PreparedDraws> prepare(const GpuScene& scene, const DrawList& list,
                                 const std::vector<Draw>& draws, GBufferKind kind, bool forward,
                                 bool motion, bool emissive, std::uint32_t view_mask,
-                                const GBufferParts& parts = {});
+                                const GBufferParts& parts = {},
+                                std::uint32_t inscatter_samples = 0);
   // Objects that draw passes borrow until the graph has run.
   struct RasterInputs {
     const GpuScene& scene;
@@ -251,6 +284,9 @@ class Renderer {
   std::map<std::array<std::uint32_t, 5>, gpu::Pipeline> shade_;
   std::map<VisibilityKnobs, gpu::Pipeline> visibility_;
   gpu::Pipeline visibility_blur_, caustics_, caustics_resolve_;
+  // By terms and number of the sun's maps.
+  std::map<std::array<std::uint32_t, 2>, gpu::Pipeline> shafts_;
+  gpu::Pipeline shafts_blur_, focus_, shutter_;
   std::map<std::uint32_t, gpu::Pipeline> camera_;            // by terms
   gpu::Sampler tile_sampler_;                                // linear, repeating
   std::map<std::uint32_t, gpu::Pipeline> hidden_pipelines_;  // by view mask

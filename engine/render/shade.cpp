@@ -93,6 +93,7 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
                             {shared::kShadeHdr, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
                             {shared::kShadeSeen, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {shared::kShadeCaustics, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
+                            {shared::kShadeShafts, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {shared::kShadeLampMaps, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {shared::kShadeLampShadows, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
                             {shared::kShadeScattered, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
@@ -114,7 +115,7 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
         builder.terms(names_of_terms(lighting));
         for (const graph::ImageHandle handle :
              {gbuffer.depth, gbuffer.normal, gbuffer.albedo, gbuffer.material, gbuffer.emissive,
-              light.seen, light.caustics, light.lamp_maps})
+              light.seen, light.caustics, light.shafts, light.lamp_maps})
           if (handle) builder.read(handle, graph::Access::kSampledCompute);
         data.hdr = builder.write(
             builder.create_image(prefix + "hdr",
@@ -158,6 +159,7 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
                 shared::kShadeCaustics,
                 context.image(light.caustics ? light.caustics : gbuffer.albedo).view(),
                 tile_sampler_.handle()),
+            texels(shared::kShadeShafts, light.shafts ? light.shafts : gbuffer.albedo),
             texels(shared::kShadeLampMaps, light.lamp_maps ? light.lamp_maps : gbuffer.depth),
             gpu::bound_buffer(shared::kShadeLampShadows, shadow_data.buffer, shadow_data.offset,
                               shadow_data.size),

@@ -46,7 +46,43 @@ double ImageSensor::electrons_per_unit() const {
   return full_well_e * std::pow(10.0, -gain_db / 20.0) / saturation();
 }
 
-glm::dvec2 through_lens(const Lens& lens, const glm::dvec2& t) {
+// Angles to the axis on both sides of a port, by Snell. A dome's entrance pupil lies `offset` of
+// its radius before its centre: a ray at the angle a in air meets it at an incidence whose sine is
+// offset sin a. Distances are long against port and pupil, so that both sides share one centre.
+static double water_angle(const Port& port, double air_rad) {
+  if (port.kind == PortKind::kFlat) return std::asin(std::sin(air_rad) / kPortIndex);
+  const double sine = port.offset * std::sin(air_rad);
+  return air_rad - std::asin(sine) + std::asin(sine / kPortIndex);
+}
+
+static double air_angle(const Port& port, double water_rad) {
+  if (port.kind == PortKind::kFlat)
+    return std::asin(std::min(kPortIndex * std::sin(water_rad), 1.0));
+  double low = 0.0, high = kPi / 2.0;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (water_angle(port, middle) < water_rad ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+// Points of the planes at distance 1 in air and in water.
+static glm::dvec2 into_water(const Port& port, const glm::dvec2& air) {
+  const double r = glm::length(air);
+  if (port.kind == PortKind::kNone || !(r > 1e-12)) return air;
+  return air * (std::tan(water_angle(port, std::atan(r))) / r);
+}
+
+static glm::dvec2 into_air(const Port& port, const glm::dvec2& water) {
+  const double r = glm::length(water);
+  if (port.kind == PortKind::kNone) return water;
+  // What total reflection keeps out lies beyond all pictures.
+  const double angle = air_angle(port, std::atan(r));
+  if (!(angle < radians(89.9))) return r > 0.0 ? water * (1e6 / r) : water;
+  return r > 1e-12 ? water * (std::tan(angle) / r) : water;
+}
+
+static glm::dvec2 distorted(const Lens& lens, const glm::dvec2& t) {
   if (lens.model == LensModel::kFisheye) {
     const double r = glm::length(t);
     return r > 1e-12 ? t * (fisheye_radius(lens, std::atan(r)) / r) : t;
@@ -59,8 +95,21 @@ glm::dvec2 through_lens(const Lens& lens, const glm::dvec2& t) {
           t.y * radial + p[0] * (r2 + 2.0 * t.y * t.y) + 2.0 * p[1] * t.x * t.y};
 }
 
-bool unfolded(const Lens& lens, const glm::dvec2& plane) {
+glm::dvec2 through_lens(const Lens& lens, const glm::dvec2& plane) {
+  return distorted(lens, into_air(lens.port, plane));
+}
+
+static double magnification(const Lens& lens) {
+  // On the axis: of a flat port n, of a dome 1 / (1 - e + e / n).
+  if (lens.port.kind == PortKind::kNone) return 1.0;
+  constexpr double kSmall = 1e-4;
+  return into_air(lens.port, {kSmall, 0.0}).x / kSmall;
+}
+
+bool unfolded(const Lens& lens, const glm::dvec2& in_water) {
   constexpr int kSteps = 32;
+  const glm::dvec2 plane = into_air(lens.port, in_water);
+  if (!(glm::length(plane) < 1e5)) return false;
   for (int i = 0; i <= kSteps; ++i) {
     const glm::dvec2 t = plane * (double(i) / kSteps);
     const bool good =
@@ -72,7 +121,7 @@ bool unfolded(const Lens& lens, const glm::dvec2& plane) {
   return true;
 }
 
-glm::dvec2 before_lens(const Lens& lens, const glm::dvec2& image) {
+static glm::dvec2 undistorted(const Lens& lens, const glm::dvec2& image) {
   if (lens.model == LensModel::kFisheye) {
     const double r = glm::length(image);
     if (!(r > 1e-12)) return image;
@@ -88,9 +137,13 @@ glm::dvec2 before_lens(const Lens& lens, const glm::dvec2& image) {
   for (int i = 0; i < 20; ++i) {
     const glm::dmat2 slope = brown_slope(lens, t);
     if (!(std::abs(glm::determinant(slope)) > 1e-15)) break;
-    t -= glm::inverse(slope) * (through_lens(lens, t) - image);
+    t -= glm::inverse(slope) * (distorted(lens, t) - image);
   }
   return t;
+}
+
+glm::dvec2 before_lens(const Lens& lens, const glm::dvec2& image) {
+  return into_water(lens.port, undistorted(lens, image));
 }
 
 Result<LensView> lens_view(const Lens& lens, std::uint32_t width, std::uint32_t height,
@@ -130,14 +183,15 @@ Result<LensView> lens_view(const Lens& lens, std::uint32_t width, std::uint32_t 
     NERITIC_TRY_STATUS(add(width, y));
   }
   // As fine as the lens's picture is in its middle.
-  const double left = std::floor(low.x * focal) - kMargin_px,
-               right = std::ceil(high.x * focal) + kMargin_px;
-  const double top = std::floor(low.y * focal) - kMargin_px,
-               bottom = std::ceil(high.y * focal) + kMargin_px;
+  const double fine = focal * magnification(lens);
+  const double left = std::floor(low.x * fine) - kMargin_px,
+               right = std::ceil(high.x * fine) + kMargin_px;
+  const double top = std::floor(low.y * fine) - kMargin_px,
+               bottom = std::ceil(high.y * fine) + kMargin_px;
   out.width = static_cast<std::uint32_t>(right - left);
   out.height = static_cast<std::uint32_t>(bottom - top);
-  out.source = {focal, focal, -left, -top};
-  out.tangents = {left / focal, right / focal, -bottom / focal, -top / focal};
+  out.source = {fine, fine, -left, -top};
+  out.tangents = {left / fine, right / fine, -bottom / fine, -top / fine};
   return out;
 }
 

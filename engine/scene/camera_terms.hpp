@@ -14,6 +14,18 @@ namespace neritic::scene {
 
 enum class LensModel { kBrownConrady, kFisheye };
 
+enum class PortKind { kNone, kFlat, kDome };
+inline constexpr const char* kPortNames[] = {"none", "flat", "dome"};
+// Index of water against air (shaders/shared/lighting.h).
+inline constexpr double kPortIndex = 1.333;
+
+// The window of a housing: outside of it is water. A flat one magnifies by the index and bends the
+// more the farther off the axis; a dome about the lens's entrance pupil bends nothing.
+struct Port {
+  PortKind kind = PortKind::kNone;
+  double offset = 0.0;  // of the pupil before a dome's centre, over its radius
+};
+
 // Brown (1971) and Conrady (1919): k of r^2, r^4, r^6, p of the decentring, in OpenCV's order and
 // signs; or Kannala and Brandt (2006) as OpenCV's fisheye: an angle's radius is
 // angle (1 + k_0 angle^2 + k_1 angle^4 + k_2 angle^6 + k_3 angle^8).
@@ -21,6 +33,7 @@ struct Lens {
   LensModel model = LensModel::kBrownConrady;
   std::array<double, 4> k{};
   std::array<double, 2> p{};
+  Port port;  // in front of it
 };
 
 enum class Bayer { kNone, kRggb, kBggr, kGrbg, kGbrg };
@@ -46,13 +59,29 @@ struct WhiteBalance {
   Vec3 gains{1.0};         // else these
 };
 
+// Depth of field of a thin lens.
+struct Focus {
+  double distance_m = 2.0, f_number = 2.8, focal_length_m = 0.011;
+  std::uint32_t samples = 24;  // that a pixel gathers
+};
+
+// What moves while the shutter is open; rows are read one after another.
+struct Shutter {
+  double exposure_s = 0.008, readout_s = 0.0;  // of a row; from the first row to the last
+  std::uint32_t samples = 8;
+};
+
 struct CameraTerms {
   std::optional<Lens> lens;
+  std::optional<Focus> focus;
+  std::optional<Shutter> shutter;
   std::optional<ImageSensor> sensor;
   std::optional<WhiteBalance> white_balance;
   double vignette = 0.0;  // times cos^4 in the exponent; 0: none
   bool linear = false;    // the picture before the tone curve too
-  bool changes_picture() const { return lens || sensor || white_balance || vignette > 0.0; }
+  bool changes_picture() const {
+    return lens || focus || shutter || sensor || white_balance || vignette > 0.0;
+  }
 };
 
 // The pinhole that a lens's picture is made from: it sees all that the lens sees.

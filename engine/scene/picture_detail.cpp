@@ -19,6 +19,7 @@ constexpr std::array<PictureLevel, 3> kLevels{{
       .occlusion_samples = 0.5,
       .inscatter_samples = 1,
       .waves = 8,
+      .shaft_samples = 0.5,
       .particles = 0.5},
      0.04},
     {"standard", {}, 0.015},
@@ -27,7 +28,8 @@ constexpr std::array<PictureLevel, 3> kLevels{{
       .shadow_samples = 18,
       .visibility_step = 1,
       .occlusion_samples = 4.0,
-      .inscatter_samples = 16},
+      .inscatter_samples = 16,
+      .shaft_samples = 4.0},
      0.001},
 }};
 

@@ -15,9 +15,10 @@ struct PictureDetail {
   std::uint32_t shadow_samples = 9;     // rings of taps round a shadow's middle
   std::uint32_t visibility_step = 2;    // pixels a side to one of the visibility image: 1 to 4
   double occlusion_samples = 1.0;       // times those named
-  std::uint32_t inscatter_samples = 4;  // of a lamp's beam before solid surfaces; blended ones: 4
+  std::uint32_t inscatter_samples = 4;  // of a lamp's beam along a sight
   std::uint32_t waves = 48;             // of the surface, the longest first; at most
   std::uint32_t scatter_levels = 8;     // octaves of forward scatter, at most
+  double shaft_samples = 1.0;           // times those named
   double particles = 1.0;               // share of the snow named
   friend bool operator==(const PictureDetail&, const PictureDetail&) = default;
 };

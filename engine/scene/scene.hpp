@@ -16,6 +16,7 @@
 #include "engine/core/result.hpp"
 #include "engine/scene/camera_terms.hpp"
 #include "engine/scene/flock.hpp"
+#include "engine/scene/lamp_profile.hpp"
 #include "engine/scene/model.hpp"
 #include "engine/scene/modem_settings.hpp"
 #include "engine/scene/physics_settings.hpp"
@@ -77,6 +78,7 @@ struct Sun {
   double overcast = 0.0;     // share of the sky that clouds cover
   std::optional<SunShadows> shadows = {};
   std::optional<Caustics> caustics = {};
+  std::optional<Shafts> shafts = {};
 };
 
 // Jerlov's optical water types (Jerlov 1976): five oceanic, five coastal.
@@ -101,6 +103,7 @@ struct Lamp {
   Vec3f color{1.0f};
   double intensity_cd = 1000.0;
   double inner_cone_rad = 0.3, outer_cone_rad = 0.6;
+  std::optional<LampProfile> profile = {};  // instead of the cone; its edge is outer_cone_rad
   bool shadows = false;
   std::uint32_t shadow_size = 512;                     // texels a side of what it sees
   double strobe_period_s = 0.0, strobe_flash_s = 0.0;  // 0: it burns steadily

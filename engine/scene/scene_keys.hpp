@@ -20,11 +20,12 @@ inline constexpr auto kLabKeys =
 
 inline constexpr auto kSunKeys =
     std::to_array<Key>({"elevation_deg", "azimuth_deg", "latitude_deg", "day", "hour", "intensity",
-                        "overcast", "shadows", "caustics"});
+                        "overcast", "shadows", "caustics", "shafts"});
 inline constexpr auto kSunShadowKeys =
     std::to_array<Key>({"size", "cascades", "reach_m", "full_resolution"});
 inline constexpr auto kCausticsKeys =
     std::to_array<Key>({"waves", "wind_m_s", "direction_deg", "tile_m", "texels"});
+inline constexpr auto kShaftKeys = std::to_array<Key>({"samples", "reach_m"});
 inline constexpr auto kAmbientKeys =
     std::to_array<Key>({"bottom_color", "bottom_depth_m", "occlusion_m", "occlusion_samples"});
 
@@ -185,13 +186,21 @@ inline constexpr auto kCameraKeys = std::to_array<Key>({"name",
                                                         "max_error",
                                                         "detail",
                                                         "lens",
+                                                        "port",
+                                                        "focus",
+                                                        "shutter",
                                                         "sensor",
                                                         "white_balance",
                                                         "vignette",
                                                         "linear"});
-inline constexpr auto kDetailKeys = std::to_array<Key>(
-    {"resolution", "shadow_size", "cascades", "shadow_samples", "visibility_step",
-     "occlusion_samples", "inscatter_samples", "waves", "scatter_levels", "particles"});
+inline constexpr auto kDetailKeys =
+    std::to_array<Key>({"resolution", "shadow_size", "cascades", "shadow_samples",
+                        "visibility_step", "occlusion_samples", "inscatter_samples", "waves",
+                        "scatter_levels", "shaft_samples", "particles"});
+inline constexpr auto kPortKeys = std::to_array<Key>({"kind", "offset"});
+inline constexpr auto kFocusKeys =
+    std::to_array<Key>({"distance_m", "f_number", "focal_length_mm", "samples"});
+inline constexpr auto kShutterKeys = std::to_array<Key>({"exposure_s", "readout_s", "samples"});
 inline constexpr auto kLensKeys = std::to_array<Key>({"model", "k", "p"});
 inline constexpr auto kImageSensorKeys = std::to_array<Key>(
     {"gain_db", "full_well_e", "read_noise_e", "saturation_ev", "bits", "bayer"});
@@ -244,9 +253,12 @@ inline constexpr auto kSonarTables =
                              {"detection", kSonarDetectionKeys},
                              {"output", kSonarOutputKeys}});
 
-inline constexpr auto kLampKeys = std::to_array<Key>(
-    {"name", "include", "on", "track", "position_m", "yaw_deg", "pitch_deg", "roll_deg",
-     "rotation_xyzw", "look_at_m", "look_at", "color", "temperature_k", "intensity_cd", "cone_deg",
-     "shadows", "shadow_size", "strobe_s"});
+inline constexpr auto kLampKeys =
+    std::to_array<Key>({"name",          "include",      "on",        "track",
+                        "position_m",    "yaw_deg",      "pitch_deg", "roll_deg",
+                        "rotation_xyzw", "look_at_m",    "look_at",   "color",
+                        "temperature_k", "intensity_cd", "cone_deg",  "half_intensity_deg",
+                        "profile",       "flux_lm",      "shadows",   "shadow_size",
+                        "strobe_s"});
 
 }  // namespace neritic::scene

@@ -41,4 +41,11 @@ struct Caustics {
   std::uint32_t texels = 192;  // a side of the tile
 };
 
+// [sun.shafts]: beams of light in the water, by the same waves as the caustics and the same solids
+// as the shadows.
+struct Shafts {
+  std::uint32_t samples = 12;  // along a sight
+  double reach_m = 20.0;       // farther off the light counts as even
+};
+
 }  // namespace neritic::scene

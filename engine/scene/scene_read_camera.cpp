@@ -23,6 +23,37 @@ Lens read_lens(TableReader& reader) {
   return lens;
 }
 
+Port read_port(TableReader& reader) {
+  Port port;
+  const std::string kind = reader.choice("kind", "", std::to_array<Key>({"flat", "dome"}));
+  if (kind.empty()) reader.refuse_table("no kind", "kind, flat or dome");
+  port.kind = kind == "dome" ? PortKind::kDome : PortKind::kFlat;
+  port.offset = reader.number("offset", 0.0, {-0.5, 0.5});
+  if (kind == "flat" && reader.has("offset")) reader.refuse("offset", "no such key of a flat port");
+  return port;
+}
+
+Focus read_focus(TableReader& reader) {
+  Focus focus;
+  focus.distance_m =
+      reader.number("distance_m", focus.distance_m, {0.05, 1e4, false, false, "metres"});
+  focus.f_number = reader.number("f_number", focus.f_number, {0.5, 64});
+  focus.focal_length_m = 1e-3 * reader.number("focal_length_mm", 1e3 * focus.focal_length_m,
+                                              {1, 1000, false, false, "millimetres"});
+  focus.samples = static_cast<std::uint32_t>(reader.whole("samples", focus.samples, 4, 256));
+  return focus;
+}
+
+Shutter read_shutter(TableReader& reader) {
+  Shutter shutter;
+  shutter.exposure_s =
+      reader.number("exposure_s", shutter.exposure_s, {0, 10, false, false, "seconds"});
+  shutter.readout_s =
+      reader.number("readout_s", shutter.readout_s, {0, 10, false, false, "seconds"});
+  shutter.samples = static_cast<std::uint32_t>(reader.whole("samples", shutter.samples, 2, 128));
+  return shutter;
+}
+
 ImageSensor read_image_sensor(TableReader& reader) {
   ImageSensor sensor;
   sensor.gain_db = reader.number("gain_db", sensor.gain_db, {0, 60, false, false, "decibels"});
@@ -55,6 +86,13 @@ WhiteBalance read_white_balance(TableReader& reader) {
 void read_camera_terms(TableReader& reader, Camera& camera) {
   CameraTerms& terms = camera.terms;
   terms.lens = read_term<Lens>(reader, "lens", kLensKeys, read_lens);
+  const auto port = read_term<Port>(reader, "port", kPortKeys, read_port);
+  if (port) {
+    if (!terms.lens) terms.lens = Lens{};
+    terms.lens->port = *port;
+  }
+  terms.focus = read_term<Focus>(reader, "focus", kFocusKeys, read_focus);
+  terms.shutter = read_term<Shutter>(reader, "shutter", kShutterKeys, read_shutter);
   terms.sensor = read_term<ImageSensor>(reader, "sensor", kImageSensorKeys, read_image_sensor);
   if (reader.has("white_balance")) terms.white_balance = read_white_balance(reader);
   terms.vignette = reader.number("vignette", 0.0, {0, 4});
@@ -63,7 +101,8 @@ void read_camera_terms(TableReader& reader, Camera& camera) {
   if (const auto view =
           lens_view(*terms.lens, camera.width, camera.height, camera.vertical_fov_rad);
       !view.ok())
-    reader.fail({view.error().code, reader.place("lens") + view.error().message.substr(4)});
+    reader.fail({view.error().code, reader.place(reader.has("lens") ? "lens" : "port") +
+                                        view.error().message.substr(4)});
 }
 
 }  // namespace neritic::scene

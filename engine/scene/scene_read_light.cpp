@@ -39,6 +39,13 @@ Caustics read_caustics(TableReader& reader) {
   return caustics;
 }
 
+Shafts read_shafts(TableReader& reader) {
+  Shafts shafts;
+  shafts.samples = static_cast<std::uint32_t>(reader.whole("samples", shafts.samples, 1, 256));
+  shafts.reach_m = reader.number("reach_m", shafts.reach_m, {0.5, 1000, false, false, "metres"});
+  return shafts;
+}
+
 // By elevation and azimuth, or by latitude, day and hour.
 void read_place_of_sun(TableReader& reader, Sun& sun) {
   const bool by_time = reader.has("latitude_deg") || reader.has("day") || reader.has("hour");
@@ -76,6 +83,13 @@ Result<Sun> read_sun(const SceneSource& source, const TomlValue& table) {
     TableReader inner(source, *caustics, "sun.caustics", kCausticsKeys);
     sun.caustics = read_caustics(inner);
     NERITIC_TRY_STATUS(inner.status());
+  }
+  if (const TomlValue* shafts = reader.table("shafts")) {
+    TableReader inner(source, *shafts, "sun.shafts", kShaftKeys);
+    sun.shafts = read_shafts(inner);
+    NERITIC_TRY_STATUS(inner.status());
+    if (!sun.shadows && !sun.caustics)
+      reader.refuse("shafts", "beside sun.shadows or sun.caustics");
   }
   NERITIC_TRY_STATUS(reader.status());
   return sun;

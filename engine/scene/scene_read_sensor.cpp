@@ -52,6 +52,7 @@ PictureDetail read_detail(TableReader& reader) {
   whole("inscatter_samples", detail.inscatter_samples, 1, 64);
   whole("waves", detail.waves, 1, 48);
   whole("scatter_levels", detail.scatter_levels, 2, 8);
+  detail.shaft_samples = knobs.number("shaft_samples", detail.shaft_samples, {0.0625, 8});
   detail.particles = knobs.number("particles", detail.particles, {0, 1});
   if (!knobs.ok()) reader.fail(knobs.status().error());
   return detail;
@@ -70,6 +71,43 @@ void read_camera(TableReader& reader, Camera& camera) {
   camera.exposure = read_exposure(reader);
   camera.detail = read_detail(reader);
   read_camera_terms(reader, camera);
+}
+
+// How its light spreads: a cone, a bell curve by its half-intensity angle, or a data sheet's table.
+void read_lamp_beam(TableReader& reader, Lamp& lamp) {
+  int ways = 0;
+  for (const Key key : {"cone_deg", "half_intensity_deg", "profile"})
+    ways += reader.has(key) ? 1 : 0;
+  if (ways > 1)
+    reader.refuse_table("several of cone_deg, half_intensity_deg, profile", "one of them");
+  if (reader.has("half_intensity_deg"))
+    lamp.profile = gaussian_profile(
+        radians(reader.number("half_intensity_deg", 20.0, {0.5, 90, false, false, "degrees"})));
+  std::vector<std::pair<double, double>> rows;
+  for (const auto& row : reader.rows("profile", {2}, {0, 180})) {
+    const bool rises = rows.empty() ? row[0] == 0.0 : radians(row[0]) > rows.back().first;
+    if (!rises || row[1] > 1.0) {
+      reader.refuse("profile", "rows [angle_deg, share], angles rising from 0, shares in [0, 1]");
+      return;
+    }
+    rows.emplace_back(radians(row[0]), row[1]);
+  }
+  if (reader.has("profile")) {
+    if (rows.size() < 2) {
+      reader.refuse("profile", "two rows [angle_deg, share] or more");
+      return;
+    }
+    lamp.profile = table_profile(rows);
+    if (!(lamp.profile->solid_angle_sr() > 0.0)) reader.refuse("profile", "some light");
+  }
+  if (lamp.profile) lamp.outer_cone_rad = lamp.profile->edge_rad;
+  const std::vector<double> cone =
+      reader.numbers("cone_deg", {2}, {0, 90, false, false, "degrees"});
+  if (cone.size() != 2) return;
+  lamp.inner_cone_rad = radians(cone[0]);
+  lamp.outer_cone_rad = radians(cone[1]);
+  if (!(cone[0] < cone[1]))
+    reader.refuse("cone_deg", "[inner, outer] half angles, the inner smaller than the outer");
 }
 
 void read_lamp(TableReader& reader, Lamp& lamp) {
@@ -91,13 +129,13 @@ void read_lamp(TableReader& reader, Lamp& lamp) {
     if (!(strobe[1] < strobe[0])) reader.refuse("strobe_s", "[period, flash], the flash shorter");
   }
   lamp.intensity_cd = reader.number("intensity_cd", 1000.0, {0, 1e7, false, false, "candela"});
-  const std::vector<double> cone =
-      reader.numbers("cone_deg", {2}, {0, 90, false, false, "degrees"});
-  if (cone.size() != 2) return;
-  lamp.inner_cone_rad = radians(cone[0]);
-  lamp.outer_cone_rad = radians(cone[1]);
-  if (!(cone[0] < cone[1]))
-    reader.refuse("cone_deg", "[inner, outer] half angles, the inner smaller than the outer");
+  read_lamp_beam(reader, lamp);
+  if (!reader.has("flux_lm")) return;
+  if (reader.has("intensity_cd")) reader.refuse("flux_lm", "no intensity_cd beside it");
+  const double flux_lm = reader.number("flux_lm", 1000.0, {0, 1e7, false, false, "lumen"});
+  lamp.intensity_cd =
+      flux_lm / (lamp.profile ? lamp.profile->solid_angle_sr()
+                              : cone_solid_angle_sr(lamp.inner_cone_rad, lamp.outer_cone_rad));
 }
 
 // Reads one array of tables. kind: "cameras"; carried sensors are named after their object.

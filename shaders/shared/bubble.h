@@ -25,10 +25,11 @@ using glm::sqrt;
 NERITIC_CONST float kBubbleIndex = 1.333f;
 
 // Height over width. Clean bubbles: Wellek, Agrawal and Skelland 1966 (AIChE Journal 12, 854),
-// 1 / (1 + 0.163 Eo^0.757) with Eo = g rho d^2 / sigma, sea water of 0.0735 N/m; caps end at 0.3.
+// 1 / (1 + 0.163 Eo^0.757) with Eo = g rho d^2 / sigma, sea water of 0.0735 N/m. Wide
+// ones become caps, round on top: they count as ellipsoids of 0.42.
 NERITIC_INLINE float bubble_aspect(float radius_m) {
   float eotvos = 9.81f * 1026.0f * 4.0f * radius_m * radius_m / 0.0735f;
-  return max(1.0f / (1.0f + 0.163f * pow(eotvos + 1e-6f, 0.757f)), 0.3f);
+  return max(1.0f / (1.0f + 0.163f * pow(eotvos + 1e-6f, 0.757f)), 0.42f);
 }
 
 // Fresnel's reflectance from water into gas, unpolarised; sine: of the angle of incidence. 1 from 1

@@ -15,6 +15,8 @@ struct CameraParams {
   uint model;
   vec4 k;
   vec2 p;
+  uint port;  // kPort...
+  float port_offset;
   float focal_px;
   vec2 center_px;
   float source_focal_px;

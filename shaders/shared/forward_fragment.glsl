@@ -5,6 +5,7 @@
 #include "shared/fragment_surface.glsl"
 
 layout(constant_id = kSpecMultiview) const bool kMultiview = true;
+layout(constant_id = kSpecForwardGlow) const uint kGlowSamples = 4;
 
 layout(location = 0) in vec3 normal;
 layout(location = 1) flat in uint label;
@@ -16,9 +17,15 @@ layout(location = 5) in vec3 position;
 layout(set = 0, binding = kRasterViews, scalar) uniform Views { View views[kMaxViews]; };
 layout(set = 0, binding = kRasterLighting, scalar) uniform Light { Lighting light; };
 
-bool light_has(uint term) { return (light.terms & term) != 0u; }
-uint lamp_count() { return light.lamp_count; }
-uint glow_samples() { return 4u; }
+bool light_has(uint term) {
+  return (light.terms & term) != 0u;
+}
+uint lamp_count() {
+  return light.lamp_count;
+}
+uint glow_samples() {
+  return kGlowSamples;
+}
 
 #include "shared/surface.glsl"
 float lamp_seen(uint lamp, vec3 position, vec3 normal) { return 1.0; }

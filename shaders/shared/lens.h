@@ -9,10 +9,12 @@
 NERITIC_SHARED_BEGIN
 
 #ifdef __cplusplus
+using glm::asin;
 using glm::atan;
 using glm::clamp;
 using glm::dot;
 using glm::length;
+using glm::sqrt;
 using glm::tan;
 #endif
 
@@ -21,6 +23,23 @@ NERITIC_CONST uint kLensBrown = 1;
 NERITIC_CONST uint kLensFisheye = 2;
 // Beyond 85 degrees off the axis there is no plane.
 NERITIC_CONST float kWidestLens_rad = 1.4835f;
+
+NERITIC_CONST uint kPortNone = 0;
+NERITIC_CONST uint kPortFlat = 1;
+NERITIC_CONST uint kPortDome = 2;
+
+// A point of the plane in air, behind a housing's port, to the plane in the water before it.
+// offset: of the pupil before a dome's centre, over its radius (engine/scene/camera_lens.cpp).
+NERITIC_INLINE vec2 through_port(uint port, float offset, vec2 air) {
+  float r = length(air);
+  if (port == kPortNone || !(r > 1e-7f)) return air;
+  float sine = r / sqrt(1.0f + r * r), angle = atan(r);
+  if (port == kPortFlat)
+    angle = asin(sine / 1.333f);
+  else
+    angle = angle - asin(offset * sine) + asin(offset * sine / 1.333f);
+  return air * (tan(angle) / r);
+}
 
 NERITIC_INLINE vec2 brown_distort(vec2 t, vec4 k, vec2 p) {
   float r2 = dot(t, t);

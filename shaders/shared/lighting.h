@@ -22,6 +22,9 @@ NERITIC_CONST uint kLightForwardScatter = 1u << 20;
 // The surface has waves. More particles hang near the bed.
 NERITIC_CONST uint kLightWaves = 1u << 21;
 NERITIC_CONST uint kLightMurk = 1u << 22;
+// The sun's light in the water comes through waves and past solids. Some lamp has a profile.
+NERITIC_CONST uint kLightShafts = 1u << 23;
+NERITIC_CONST uint kLightProfiles = 1u << 24;
 // Refractive index of sea water against air, in the visible (1.33 to 1.34, Mobley 1994).
 NERITIC_CONST float kWaterIndex = 1.333f;
 // Diffuse sky light through a flat surface (Mobley 1994, sec. 4.2: reflectance 0.066).
@@ -36,7 +39,12 @@ struct SpotLight {
   vec3 intensity_cd;
   float cos_inner;
   float cos_outer;
+  // With kLightProfiles, where profiled is not 0: intensity over that of the axis, at even steps of
+  // sqrt(1 - cosine) from the axis to cos_outer; nothing beyond.
+  uint profiled;
+  float profile[16];
 };
+NERITIC_CONST uint kProfileSteps = 16;
 
 struct Lighting {
   uint terms;  // kLight... bits
@@ -87,6 +95,7 @@ NERITIC_CONST uint kShadeLampMaps = 18;
 NERITIC_CONST uint kShadeLampShadows = 19;
 NERITIC_CONST uint kShadeScattered = 24;  // with kLightForwardScatter
 NERITIC_CONST uint kShadeWaves = 25;      // with kLightWaves
+NERITIC_CONST uint kShadeShafts = 26;     // with kLightShafts
 NERITIC_CONST uint kShadeGroup = 8;
 // Specialisation constants of the shade pass: the terms and the number of lamps. Terms that a scene
 // does not name are not compiled: a CPU driver computes both sides of a branch, and runs the body

@@ -116,8 +116,9 @@ NERITIC_CONST uint kMaterialEmissive = 5;
 // lane what an index picks that it cannot prove uniform, so both the texture reads of a material
 // and the view are settled when the pipeline is made.
 NERITIC_CONST uint kSpecMotion = 0;
-NERITIC_CONST uint kSpecMaterial = 1;   // the material's flags
-NERITIC_CONST uint kSpecMultiview = 2;  // 0: the set has one view
+NERITIC_CONST uint kSpecMaterial = 1;     // the material's flags
+NERITIC_CONST uint kSpecMultiview = 2;    // 0: the set has one view
+NERITIC_CONST uint kSpecForwardGlow = 3;  // samples of a lamp's beam before blended surfaces
 
 struct RasterPush {
   vec2 target_size;  // pixels, for motion

@@ -73,13 +73,6 @@ const Seen kAllSeen = Seen(1.0, 1.0, 1.0, 1.0);
 // Share of a lamp that the place sees. The including file defines it.
 float lamp_seen(uint lamp, vec3 position, vec3 normal);
 
-// Share of the sun's light that comes from within its core of some 15 degrees, in a beam not yet scattered or
-// only by a little (kOutOfCore). The shadow of the rest is as wide as the sky's.
-float core_share(float depth_m) {
-  if (!light_has(kLightWater)) return 1.0;
-  return exp(-min(kOutOfCore * light.particle_scattering.g * max(depth_m, 0.0) / light.sun_cosine, 80.0));
-}
-
 // Radiance that the surface sends towards the eye (before the water between).
 vec3 shade_surface(Surface s, vec3 to_eye, Seen seen) {
   vec3 radiance = vec3(0.0);
@@ -109,7 +102,7 @@ vec3 shade_surface(Surface s, vec3 to_eye, Seen seen) {
     float distance_m = max(length(to_lamp), 1e-3);
     to_lamp /= distance_m;
     float cosine = dot(-to_lamp, light.lamps[i].direction);
-    float cone = smoothstep(light.lamps[i].cos_outer, light.lamps[i].cos_inner, cosine);
+    float cone = beam_of(i, cosine);
     if (cone <= 0.0) continue;
     // A lamp is a disk of 5 cm, no point: close by its light stays finite.
     vec3 arriving = light.lamps[i].intensity_cd * cone / (distance_m * distance_m + 0.0025);

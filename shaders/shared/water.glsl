@@ -6,6 +6,7 @@
 #ifndef NERITIC_WATER_GLSL
 #define NERITIC_WATER_GLSL
 #include "shared/phase.h"
+#include "shared/visibility.h"
 
 const float kPi = 3.14159265358979;
 // Mean cosine of light that comes down diffusely: its radiance passes through 1 / this metres of water a
@@ -34,17 +35,43 @@ vec3 from_bottom(float depth_m) {
   return light.bottom_color * exp(-min(light.diffuse_attenuation * (2.0 * height_m), vec3(80.0)));
 }
 
-// Radiance that a metre of water adds along a sight in the unit direction, 1/m, where irradiance comes
-// down and the share direct of it still in the sun's beam.
-vec3 scattered_towards(vec3 direction, vec3 irradiance, vec3 direct) {
-  // The scattering angle is between the light's travel and the way to the eye, so its cosine is that of
-  // the view direction and the direction to the sun.
+// Share of the sun's light that comes from within its core of some 15 degrees, in a beam not yet
+// scattered or only by a little (kOutOfCore). The shadow of the rest is as wide as the sky's.
+float core_share(float depth_m) {
+  if (!light_has(kLightWater)) return 1.0;
+  return exp(
+      -min(kOutOfCore * light.particle_scattering.g * max(depth_m, 0.0) / light.sun_cosine, 80.0));
+}
+
+// Share of lamp i's intensity on its axis in a direction, by the cosine of the angle between.
+float beam_of(uint i, float cosine) {
+  if (light_has(kLightProfiles) && light.lamps[i].profiled != 0u) {
+    float step = sqrt(max(1.0 - cosine, 0.0) / max(1.0 - light.lamps[i].cos_outer, 1e-6)) *
+                 float(kProfileSteps - 1u);
+    uint low = min(uint(step), kProfileSteps - 2u);
+    float between =
+        mix(light.lamps[i].profile[low], light.lamps[i].profile[low + 1u], step - float(low));
+    return step <= float(kProfileSteps - 1u) ? between : 0.0;
+  }
+  return smoothstep(light.lamps[i].cos_outer, light.lamps[i].cos_inner, cosine);
+}
+
+// Radiance that a metre of water adds along a sight in the unit direction, 1/m, where irradiance
+// comes down and the share direct of it still in the sun's beam, of which the share lit gets there.
+vec3 scattered_towards(vec3 direction, vec3 irradiance, vec3 direct, float lit) {
+  // The scattering angle is between the light's travel and the way to the eye, so its cosine is
+  // that of the view direction and the direction to the sun.
   float to_sun = dot(direction, light.to_sun);
   vec3 from_beam = light.particle_scattering * henyey_greenstein(to_sun, kParticleG) +
                    light.water_scattering * sea_water_phase(to_sun);
   vec3 from_diffuse = light.particle_scattering * henyey_greenstein(direction.y, kDiffuseG) +
                       light.water_scattering * sea_water_phase(direction.y);
-  return irradiance * (direct * from_beam / light.sun_cosine + (1.0 - direct) * from_diffuse / kDiffuseCosine);
+  return irradiance * (direct * lit * from_beam / light.sun_cosine +
+                       (1.0 - direct) * from_diffuse / kDiffuseCosine);
+}
+
+vec3 scattered_towards(vec3 direction, vec3 irradiance, vec3 direct) {
+  return scattered_towards(direction, irradiance, direct, 1.0);
 }
 
 // The part of a straight sight that lies in water: metres from its start at which it begins and ends.
@@ -94,7 +121,8 @@ vec3 kept_forwards(float length_m) {
 }
 
 // From a point at depth_m along the unit direction (world axes) for length_m (may be infinite).
-Sight look_through(float depth_m, vec3 direction, float length_m) {
+// lit: share of the sun's beam that reaches the water on the way (shafts.comp).
+Sight look_through(float depth_m, vec3 direction, float length_m, float lit) {
   Sight sight;
   sight.transmittance = vec3(1.0);
   sight.added = vec3(0.0);
@@ -112,7 +140,7 @@ Sight look_through(float depth_m, vec3 direction, float length_m) {
   // Exponents beyond 80 are as good as infinite and keep inf * 0 out.
   sight.transmittance = exp(-min(light.beam_attenuation * murky_m, vec3(80.0)));
   if (!light_has(kLightScattering) || !light_has(kLightSun)) return sight;
-  vec3 source = scattered_towards(direction, downwelling(depth_m), direct_share(depth_m));
+  vec3 source = scattered_towards(direction, downwelling(depth_m), direct_share(depth_m), lit);
   if (light_has(kLightAmbient) && light.bottom_depth_m >= 0.0) {
     // The bottom shines evenly from below; of its light a level sight is sent half, one that looks down, along
     // which it travels forwards, nearly all.
@@ -133,8 +161,12 @@ Sight look_through(float depth_m, vec3 direction, float length_m) {
   return sight;
 }
 
-// Cosines at which the sun's glow in Snell's window begins and is full: 4.8 and 1.8 degrees. Its smooth
-// step's integral is pi (2 - begin - full) sr.
+Sight look_through(float depth_m, vec3 direction, float length_m) {
+  return look_through(depth_m, direction, length_m, 1.0);
+}
+
+// Cosines at which the sun's glow in Snell's window begins and is full: 4.8 and 1.8 degrees. Its
+// smooth step's integral is pi (2 - begin - full) sr.
 const float kGlowEdge = 0.9965;
 const float kGlowFull = 0.9995;
 
@@ -187,7 +219,7 @@ vec3 one_lamp_glow(uint i, vec3 from_lamp, vec3 direction, vec2 part_m, float ne
     float reach = max(length(travel), 0.05);
     float in_water_m = water_length(lamp_depth_m, lamp_depth_m - travel.y, reach) + t - part_m.x;
     travel /= reach;
-    float cone = smoothstep(light.lamps[i].cos_outer, light.lamps[i].cos_inner, dot(travel, light.lamps[i].direction));
+    float cone = beam_of(i, dot(travel, light.lamps[i].direction));
     float cosine = dot(travel, -direction);
     vec3 turned = light.particle_scattering * henyey_greenstein(cosine, kParticleG) +
                   light.water_scattering * sea_water_phase(cosine);

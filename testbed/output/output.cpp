@@ -40,6 +40,11 @@ void add_camera(const ViewImages& view, nlohmann::json& meta) {
     meta["lens"] = {{"model", fisheye ? "fisheye" : "brown_conrady"},
                     {"opencv", fisheye ? nlohmann::json{k[0], k[1], k[2], k[3]}
                                        : nlohmann::json{k[0], k[1], p[0], p[1], k[2]}}};
+    const scene::Port& port = view.lens->port;
+    if (port.kind != scene::PortKind::kNone)
+      meta["port"] = {{"kind", scene::kPortNames[static_cast<int>(port.kind)]},
+                      {"offset", port.offset},
+                      {"index", scene::kPortIndex}};
   }
   if (view.sensor)
     meta["sensor"] = {{"gain_db", view.sensor->gain_db},

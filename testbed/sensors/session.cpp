@@ -72,6 +72,18 @@ void Session::dim_lamp(std::size_t index, double share) {
   scene_.lamps[index].intensity_cd = share * lamp_cd_[index];
 }
 
+namespace {
+
+// Whether some picture needs motion for itself.
+bool shutter_opens(const scene::Scene& scene, const FrameRequest& request) {
+  for (std::size_t k = 0; k < request.cameras.size(); ++k)
+    if (request.camera_capture(k).color && scene.cameras[request.cameras[k]].terms.shutter)
+      return true;
+  return false;
+}
+
+}  // namespace
+
 std::optional<CameraPicture> Session::picture_of(std::size_t index, const Capture& capture) {
   const scene::Camera& camera = scene_.cameras[index];
   if (!camera.terms.changes_picture() && !camera.terms.linear) return std::nullopt;
@@ -116,8 +128,9 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
   for (const ViewsRequest& set : request.views)
     if (set.views.worn_object != render::ViewSet::kWornByNobody)
       worn.push_back(set.views.worn_object);
-  work.state = render::evaluate_frame(motion, *gpu_scene_, request.time_s, request.next_time_s,
-                                      request.wants_motion(), worn);
+  work.state =
+      render::evaluate_frame(motion, *gpu_scene_, request.time_s, request.next_time_s,
+                             request.wants_motion() || shutter_opens(scene_, request), worn);
   if (request.capture.poses && request.capture.to_host)
     work.poses = motions_of(participants_of(scene_), motion, request.time_s);
   NERITIC_TRY(const render::DeformedGeometry deformed,

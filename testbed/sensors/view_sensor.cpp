@@ -24,8 +24,8 @@ std::uint32_t times(std::uint32_t named, double factor, double least, double mos
   return static_cast<std::uint32_t>(std::clamp(std::round(named * factor), least, most));
 }
 
-// Pixels by which coarser meshes may differ (scene::MeshLevel); of the sun's maps texels. None where
-// each pixel has a shadow of its own.
+// Pixels by which coarser meshes may differ (scene::MeshLevel); of the sun's maps texels. None
+// where each pixel has a shadow of its own.
 double mesh_error_px(const scene::PictureDetail& detail) {
   return 0.5 * (static_cast<double>(detail.visibility_step) - 1.0);
 }
@@ -62,8 +62,12 @@ Status declare_shared_light(const FrameParts& frame, const ViewsWork& work,
   scene::Caustics caustics = *scene.sun->caustics;
   caustics.texels = times(caustics.texels, detail.shadow_size, 16, 2048);
   const double origin_depth_m = static_cast<double>(lighting.origin_depth_m);
-  const auto [first, end] =
-      render::caustic_levels(origin_depth_m - draws.highest_m, origin_depth_m - draws.lowest_m);
+  double shallow_m = origin_depth_m - draws.highest_m, deep_m = origin_depth_m - draws.lowest_m;
+  if (scene.sun->shafts) {  // they lie in all the water about
+    shallow_m = 0.0;
+    deep_m = std::max(deep_m, origin_depth_m + scene.sun->shafts->reach_m);
+  }
+  const auto [first, end] = render::caustic_levels(shallow_m, deep_m);
   const auto [found, is_new] = shared_light.caustics.try_emplace(caustics.texels);
   FrameLight::Net& net = found->second;
   if (is_new) {
@@ -92,6 +96,28 @@ std::uint32_t visibility_step(const scene::Scene& scene, const scene::PictureDet
   return full ? 1 : detail.visibility_step;
 }
 
+// Beams of the sun in the water, where it scatters and something makes beams of the light.
+Status declare_shafts(const FrameParts& frame, const std::string& prefix, const render::GBuffer& g,
+                      const render::ViewSet& views, const scene::PictureDetail& detail,
+                      const ViewsWork& work, graph::ImageHandle cascades,
+                      shared::Lighting& lighting, render::LightImages& light) {
+  const scene::Scene& scene = frame.scene;
+  const bool scatters = (lighting.terms & shared::kLightScattering) != 0;
+  if (!scene.sun || !scene.sun->shafts || !scatters || !(lighting.direct_share > 0.0f)) return {};
+  if (!cascades && !light.caustics) return {};
+  render::ShaftInputs inputs;
+  inputs.cascades = cascades;
+  inputs.cascade_count = cascades ? static_cast<std::uint32_t>(work.cascades.size()) : 0;
+  inputs.caustics = light.caustics;
+  if (cascades) inputs.sun = render::visibility_params(scene, views, lighting, work.cascades);
+  inputs.params = {times(scene.sun->shafts->samples, detail.shaft_samples, 1, 256),
+                   static_cast<float>(scene.sun->shafts->reach_m)};
+  NERITIC_TRY(light.shafts,
+              frame.renderer.declare_shafts(frame.graph, prefix, g, views, lighting, inputs));
+  lighting.terms |= shared::kLightShafts;
+  return {};
+}
+
 // Declares the passes that find what stands in the light's way, and sets the terms that are there.
 Result<render::LightImages> declare_light(const FrameParts& frame, const std::string& prefix,
                                           const render::GBuffer& g, const render::ViewSet& views,
@@ -116,6 +142,8 @@ Result<render::LightImages> declare_light(const FrameParts& frame, const std::st
     NERITIC_TRY(cascades, frame.sun_maps.declare(frame, prefix, work));
   }
   NERITIC_TRY_STATUS(declare_shared_light(frame, work, draws, detail, lighting, light));
+  NERITIC_TRY_STATUS(
+      declare_shafts(frame, prefix, g, views, detail, work, cascades, lighting, light));
   if (!cascades && knobs.occlusion_taps == 0) return light;
   lighting.terms |= shared::kLightSeen;
   NERITIC_TRY(light.seen, frame.renderer.declare_visibility(
@@ -146,7 +174,8 @@ Result<CameraHdr> declare_camera(const FrameParts& frame, const std::string& pre
                                  graph::ImageHandle hdr, std::uint32_t layers,
                                  const CameraPicture& picture, const shared::Lighting& lighting) {
   const scene::CameraTerms& terms = picture.terms;
-  if (!terms.changes_picture()) return CameraHdr{hdr};
+  if (!terms.lens && !terms.sensor && !terms.white_balance && !(terms.vignette > 0.0))
+    return CameraHdr{hdr};
   shared::CameraParams params{};
   std::uint32_t bits = 0;
   params.focal_px = static_cast<float>(picture.focal_px);
@@ -158,6 +187,8 @@ Result<CameraHdr> declare_camera(const FrameParts& frame, const std::string& pre
     for (int i = 0; i < 4; ++i)
       params.k[i] = static_cast<float>(terms.lens->k[static_cast<std::size_t>(i)]);
     params.p = {float(terms.lens->p[0]), float(terms.lens->p[1])};
+    params.port = static_cast<std::uint32_t>(terms.lens->port.kind);
+    params.port_offset = static_cast<float>(terms.lens->port.offset);
     params.source_focal_px = static_cast<float>(picture.lens->source.fx);
     params.source_center_px = {float(picture.lens->source.cx), float(picture.lens->source.cy)};
   }
@@ -185,6 +216,38 @@ Result<CameraHdr> declare_camera(const FrameParts& frame, const std::string& pre
   NERITIC_TRY(out.hdr, frame.renderer.declare_camera(frame.graph, prefix, hdr, params, bits,
                                                      picture.width, picture.height, layers));
   return out;
+}
+
+// What focus and shutter do, before the lens.
+Result<graph::ImageHandle> declare_focus_and_shutter(const FrameParts& frame,
+                                                     const std::string& prefix,
+                                                     graph::ImageHandle hdr,
+                                                     const render::GBuffer& g, double near_m,
+                                                     const CameraPicture& picture) {
+  const scene::CameraTerms& terms = picture.terms;
+  if (terms.focus) {
+    const scene::Focus& focus = *terms.focus;
+    const double focal_px = picture.lens ? picture.lens->source.fx : picture.focal_px;
+    const double opening_m = focus.focal_length_m / focus.f_number;
+    // No spot is wider than a twentieth of the picture.
+    const double widest_px =
+        std::clamp(opening_m / 2.0 * focal_px / std::max(near_m, 0.2), 1.0, 0.05 * g.height + 1.0);
+    NERITIC_TRY(hdr, frame.renderer.declare_focus(
+                         frame.graph, prefix, hdr, g,
+                         {static_cast<float>(near_m), static_cast<float>(focus.distance_m),
+                          static_cast<float>(opening_m / 2.0 * focal_px),
+                          static_cast<float>(widest_px), focus.samples}));
+  }
+  const double step_s = frame.state.next_time_s - frame.state.time_s;
+  if (terms.shutter && g.motion && step_s > 0.0) {
+    const scene::Shutter& shutter = *terms.shutter;
+    NERITIC_TRY(hdr, frame.renderer.declare_shutter(
+                         frame.graph, prefix, hdr, g,
+                         {static_cast<float>(shutter.exposure_s / step_s),
+                          static_cast<float>(shutter.readout_s / step_s), shutter.samples,
+                          0.25f * static_cast<float>(g.width)}));
+  }
+  return hdr;
 }
 
 // The tonemapped picture of a surface G-buffer.
@@ -217,7 +280,8 @@ Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::str
                                             .visibility_step = visibility_step(frame.scene, detail),
                                             .inscatter_samples = detail.inscatter_samples}));
   NERITIC_TRY(hdr, frame.renderer.declare_forward(frame.graph, prefix, hdr, g, frame.gpu_scene,
-                                                  frame.deformed, views, draws, lighting));
+                                                  frame.deformed, views, draws, lighting,
+                                                  detail.inscatter_samples));
   if (scattered) {
     scene::ForwardScatter scatter = *frame.scene.water->forward_scatter;
     scatter.levels = std::min(scatter.levels, detail.scatter_levels);
@@ -235,6 +299,8 @@ Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::str
   }
   std::uint32_t width = g.width, height = g.height;
   if (request.camera) {
+    NERITIC_TRY(hdr, declare_focus_and_shutter(frame, prefix, hdr, g, views.views.front().near_m,
+                                               *request.camera));
     NERITIC_TRY(const CameraHdr made,
                 declare_camera(frame, prefix, hdr, g.layers, *request.camera, lighting));
     hdr = made.hdr;

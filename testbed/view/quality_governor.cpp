@@ -31,6 +31,7 @@ const std::array<scene::PictureDetail, kLightLevels> kLight{{{},
                                                               .inscatter_samples = 2,
                                                               .waves = 24,
                                                               .scatter_levels = 6,
+                                                              .shaft_samples = 0.67,
                                                               .particles = 0.7},
                                                              {.shadow_size = 0.5,
                                                               .cascades = 2,
@@ -40,6 +41,7 @@ const std::array<scene::PictureDetail, kLightLevels> kLight{{{},
                                                               .inscatter_samples = 1,
                                                               .waves = 16,
                                                               .scatter_levels = 4,
+                                                              .shaft_samples = 0.5,
                                                               .particles = 0.5},
                                                              {.shadow_size = 0.25,
                                                               .cascades = 1,
@@ -49,6 +51,7 @@ const std::array<scene::PictureDetail, kLightLevels> kLight{{{},
                                                               .inscatter_samples = 1,
                                                               .waves = 8,
                                                               .scatter_levels = 2,
+                                                              .shaft_samples = 0.34,
                                                               .particles = 0.25}}};
 
 // A guess of a level's cost beside the best: it steers how far a step goes, and misses correct it.
@@ -87,6 +90,7 @@ scene::PictureDetail detail_at(const scene::PictureDetail& camera, std::uint32_t
   out.occlusion_samples = std::min(out.occlusion_samples, level.occlusion_samples);
   out.inscatter_samples = std::min(out.inscatter_samples, level.inscatter_samples);
   out.waves = std::min(out.waves, level.waves);
+  out.shaft_samples = std::min(out.shaft_samples, level.shaft_samples);
   out.scatter_levels = std::min(out.scatter_levels, level.scatter_levels);
   out.particles = std::min(out.particles, level.particles);
   return out;

@@ -236,8 +236,8 @@ TEST(Bubbles, AreAsFlatAsWellekMeasuredAndMirrorAllBeyondTheCriticalAngle) {
   EXPECT_NEAR(shared::bubble_aspect(0.001f), 0.906, 0.005);
   EXPECT_NEAR(shared::bubble_aspect(0.0025f), 0.707, 0.005);
   EXPECT_NEAR(shared::bubble_aspect(0.005f), 0.458, 0.005);
-  EXPECT_EQ(shared::bubble_aspect(1.0f), 0.3f);
-  EXPECT_NEAR(shared::bubble_aspect(0.0f), 1.0f, 1e-4f);
+  EXPECT_EQ(shared::bubble_aspect(1.0f), 0.42f);
+  EXPECT_NEAR(shared::bubble_aspect(0.0f), 1.0f, 1e-4);
   // Fresnel: ((n - 1) / (n + 1))^2 head on; all from 1 / n = sin 48.6 degrees on.
   EXPECT_NEAR(shared::bubble_reflectance(0.0f), 0.02037, 1e-4);
   EXPECT_LT(shared::bubble_reflectance(0.74f), 0.5f);

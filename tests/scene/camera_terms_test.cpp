@@ -66,6 +66,64 @@ TEST(CameraLens, ALensThatFoldsOrSeesTooWideIsRefused) {
   EXPECT_TRUE(lens_view({LensModel::kFisheye}, 640, 480, radians(90.0)).ok());
 }
 
+TEST(CameraPort, AFlatOneBendsBySnell) {
+  const Lens lens{.port = {PortKind::kFlat}};
+  // A ray at 45 degrees in water leaves at asin(1.333 sin 45) = 70.49 degrees in air.
+  const glm::dvec2 image = through_lens(lens, {1.0, 0.0});
+  EXPECT_NEAR(image.x, std::tan(std::asin(1.333 * std::sqrt(0.5))), 1e-9);
+  EXPECT_NEAR(image.x, 2.823, 1e-3);
+  // In the middle it magnifies by the index; beyond 48.6 degrees nothing comes in.
+  EXPECT_NEAR(through_lens(lens, {1e-5, 0.0}).x / 1e-5, 1.333, 1e-6);
+  EXPECT_FALSE(unfolded(lens, {std::tan(radians(49.0)), 0.0}));
+  EXPECT_TRUE(unfolded(lens, {std::tan(radians(48.0)), 0.0}));
+}
+
+TEST(CameraPort, ADomeAboutThePupilBendsNothingAndOneBesideItDoes) {
+  const Lens centred{.port = {PortKind::kDome, 0.0}};
+  EXPECT_NEAR(through_lens(centred, {0.7, -0.4}).x, 0.7, 1e-9);
+  // The pupil a fifth of the radius before the centre: by hand at 40 degrees in air.
+  const Lens ahead{.port = {PortKind::kDome, 0.2}};
+  const double sine = 0.2 * std::sin(radians(40.0));
+  const double water = radians(40.0) - std::asin(sine) + std::asin(sine / 1.333);
+  EXPECT_NEAR(before_lens(ahead, {std::tan(radians(40.0)), 0.0}).x, std::tan(water), 1e-12);
+}
+
+TEST(CameraPort, PicturesAndArraysUseOneMap) {
+  for (const Lens& lens :
+       {Lens{.k = {-0.1, 0.01}, .port = {PortKind::kFlat}}, Lens{.port = {PortKind::kDome, 0.3}},
+        Lens{.port = {PortKind::kDome, -0.4}}})
+    for (double x = -0.7; x <= 0.7; x += 0.1) {
+      const glm::dvec2 plane(x, 0.3), image = through_lens(lens, plane);
+      EXPECT_LT(glm::length(before_lens(lens, image) - plane), 1e-8);
+      const glm::vec2 air = shared::lens_undistort(
+          shared::kLensBrown, glm::vec2(image),
+          glm::vec4(lens.k[0], lens.k[1], lens.k[2], lens.k[3]), glm::vec2(0.0f));
+      const glm::dvec2 shader(shared::through_port(static_cast<std::uint32_t>(lens.port.kind),
+                                                   static_cast<float>(lens.port.offset), air));
+      EXPECT_LT(glm::length(shader - plane), 2e-5) << x;
+    }
+}
+
+TEST(CameraScene, NamesPortFocusAndShutter) {
+  const test::ScratchFolder scratch;
+  const Scene scene = scene_of(scratch, R"(
+[[cameras]]
+port = { kind = "flat" }
+focus = { distance_m = 1.5, f_number = 4, focal_length_mm = 35 }
+shutter = { exposure_s = 0.01, readout_s = 0.02 }
+)");
+  const CameraTerms& terms = scene.cameras.at(0).terms;
+  ASSERT_TRUE(terms.lens && terms.focus && terms.shutter);
+  EXPECT_EQ(terms.lens->port.kind, PortKind::kFlat);
+  EXPECT_NEAR(terms.focus->focal_length_m, 0.035, 1e-12);
+  EXPECT_EQ(terms.shutter->readout_s, 0.02);
+  for (const char* bad : {"port = {}", "port = { kind = \"flat\", offset = 0.1 }",
+                          "focus = { distance_m = 0 }", "shutter = { samples = 1 }"}) {
+    ASSERT_TRUE(write_text(scratch / "bad.toml", std::string("[[cameras]]\n") + bad + "\n").ok());
+    EXPECT_FALSE(load_scene(scratch / "bad.toml").ok()) << bad;
+  }
+}
+
 TEST(CameraScene, NamesLensSensorAndWhiteBalance) {
   const test::ScratchFolder scratch;
   const Scene scene = scene_of(scratch, R"(

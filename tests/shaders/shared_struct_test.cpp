@@ -12,12 +12,14 @@
 #include "shaders.hpp"
 #include "shared/camera.h"
 #include "shared/caustics.h"
+#include "shared/exposure.h"
 #include "shared/forward_scatter.h"
 #include "shared/imgui.h"
 #include "shared/lighting.h"
 #include "shared/panel.h"
 #include "shared/particles.h"
 #include "shared/raster.h"
+#include "shared/shafts.h"
 #include "shared/sonar.h"
 #include "shared/sonar_echo.h"
 #include "shared/sonar_fan.h"
@@ -63,7 +65,8 @@ const std::map<std::string, Offsets>& shared_structs() {
         MEMBER(DeformPush, next)}},
       {"SpotLight",
        {MEMBER(SpotLight, position), MEMBER(SpotLight, direction), MEMBER(SpotLight, intensity_cd),
-        MEMBER(SpotLight, cos_inner), MEMBER(SpotLight, cos_outer)}},
+        MEMBER(SpotLight, cos_inner), MEMBER(SpotLight, cos_outer), MEMBER(SpotLight, profiled),
+        MEMBER(SpotLight, profile)}},
       {"Lighting",
        {MEMBER(Lighting, terms),
         MEMBER(Lighting, lamp_count),
@@ -114,6 +117,7 @@ const std::map<std::string, Offsets>& shared_structs() {
         MEMBER(Waves, eye_height_m), MEMBER(Waves, waves)}},
       {"CameraParams",
        {MEMBER(CameraParams, model), MEMBER(CameraParams, k), MEMBER(CameraParams, p),
+        MEMBER(CameraParams, port), MEMBER(CameraParams, port_offset),
         MEMBER(CameraParams, focal_px), MEMBER(CameraParams, center_px),
         MEMBER(CameraParams, source_focal_px), MEMBER(CameraParams, source_center_px),
         MEMBER(CameraParams, vignette), MEMBER(CameraParams, white),
@@ -123,6 +127,13 @@ const std::map<std::string, Offsets>& shared_structs() {
       {"ScatterPush",
        {MEMBER(ScatterPush, scattering), MEMBER(ScatterPush, high_cycles_rad),
         MEMBER(ScatterPush, low_cycles_rad), MEMBER(ScatterPush, angle_rad)}},
+      {"ShaftParams", {MEMBER(ShaftParams, samples), MEMBER(ShaftParams, reach_m)}},
+      {"FocusParams",
+       {MEMBER(FocusParams, near_m), MEMBER(FocusParams, focus_m), MEMBER(FocusParams, opening_px),
+        MEMBER(FocusParams, widest_px), MEMBER(FocusParams, samples)}},
+      {"ShutterParams",
+       {MEMBER(ShutterParams, exposed), MEMBER(ShutterParams, readout),
+        MEMBER(ShutterParams, samples), MEMBER(ShutterParams, farthest_px)}},
       {"ShadePush", {MEMBER(ShadePush, first_group)}},
       {"ParticlePush", {MEMBER(ParticlePush, target_size), MEMBER(ParticlePush, shutter)}},
       {"SonarColumn",

@@ -150,7 +150,7 @@ def main():
         rough=1.0,
     )
     m_met = g.material("metal", (0.80, 0.81, 0.83, 1), metal=1.0, rough=0.28)
-    m_glass = g.material("glass", (0.02, 0.035, 0.045, 1), metal=0.0, rough=0.05)
+    m_glass = g.material("glass", (0.10, 0.14, 0.16, 0.25), metal=0.0, rough=0.05, blend=True)
     parts = gear()
     mesh = g.mesh(
         "diver",

@@ -4,10 +4,11 @@ import numpy as np
 import noise as N
 from diver_body import ANKLE, ARM, FORE, SHOULDER, UPPER, rigid, torso
 from mesh import join, loft, shade
-from shapes import box, circle, curve, cylinder, revolve, ring_band, round_rect, tube
+from shapes import box, circle, curve, cylinder, revolve, ring_band, round_rect, sphere, tube
 
 # linear colours of the gear
 BLACK, DARK = (0.03, 0.03, 0.032), (0.06, 0.062, 0.066)
+SKIN = (0.47, 0.21, 0.135)
 ORANGE, YELLOW = (0.85, 0.22, 0.03), (0.86, 0.58, 0.03)
 
 
@@ -23,6 +24,8 @@ def mask():
         (-0.137, 0.166, 0.090, 0),
         (-0.137, 0.150, 0.074, 0),
         (-0.131, 0.147, 0.071, 0),
+        (-0.112, 0.146, 0.070, 0),  # the skirt within, back to the face
+        (-0.078, 0.140, 0.074, 0),
     ):
         o = round_rect(w, h, h * 0.36, 5)
         bend = 0.055 * (np.abs(o[:, 0]) / 0.085) ** 2
@@ -37,6 +40,15 @@ def mask():
         ringp = np.column_stack([o[:, 0], o[:, 1] + y + 0.001, -0.1335 + bend])
         pane.append(loft([ringp + [0, 0, 0.006], ringp, ringp * [1, 1, 1]], (True, True)))
     glass += pane
+    for s in (-1, 1):  # eyes behind the panes, with lids and brows
+        at = (s * 0.032, 0.789)
+        rub.append(sphere(0.0125, 16, 10).at(*at, -0.087).colored((0.80, 0.76, 0.72)))
+        rub.append(sphere(0.0062, 14, 8).at(at[0] - s * 0.0008, at[1] - 0.0006, -0.0948).colored((0.05, 0.028, 0.015)))
+        lid = sphere(0.0142, 16, 10).scaled(1.15, 0.62, 1.0)
+        rub.append(lid.at(at[0], at[1] + 0.0082, -0.0868).colored(SKIN))
+        rub.append(lid.scaled(1.0, 0.7, 1.0).at(at[0], at[1] - 0.0092, -0.0862).colored(SKIN))
+        brow = box(0.026, 0.0048, 0.006, 0.002, 1).rot("z", -8 * s)
+        rub.append(brow.at(at[0] + s * 0.002, at[1] + 0.0205, -0.0915).colored((0.06, 0.04, 0.03)))
     nose = loft(
         [
             np.column_stack([circle(14, r, r * 1.15) + [0, y - 0.032], np.full(14, z)])
@@ -50,7 +62,7 @@ def mask():
     pts = np.column_stack([np.sin(t) * 0.093, y + 0.012 * np.cos(t) * -1 + 0 * t, 0.006 - np.cos(t) * 0.114])
     strap = []
     for dy in (-0.011, 0.011):
-        strap.append(pts[4:37] + [0, dy, 0])
+        strap.append(pts[7:34] + [0, dy, 0])
     outer = loft([np.array([a, b, b * [0.97, 1, 0.97], a * [0.97, 1, 0.97]]) for a, b in zip(*strap)])
     rub.append(outer.colored(BLACK))
     second = []

@@ -266,6 +266,7 @@ def main():
         base=g.texture("skin_color", c, 90),
         mr=g.texture("skin_mr", mr, 80),
         normal=g.texture("skin_normal", n, 78),
+        normal_scale=0.35,  # fins stand at grazing light, which makes noise of more
         metal=1.0,
         rough=1.0,
     )

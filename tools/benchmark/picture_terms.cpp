@@ -17,6 +17,7 @@ void name_everything(scene::Scene& scene) {
   scene.cameras.at(0).height = 720;
   if (!scene.sun->shadows) scene.sun->shadows = scene::SunShadows{.cascades = 2};
   if (!scene.sun->caustics) scene.sun->caustics = scene::Caustics{};
+  if (!scene.sun->shafts) scene.sun->shafts = scene::Shafts{};
   if (!scene.ambient) scene.ambient = scene::Ambient{.bottom_depth_m = 18.0, .occlusion_m = 1.5};
   scene::Water& water = *scene.water;
   if (!water.forward_scatter) water.forward_scatter = scene::ForwardScatter{};
@@ -46,6 +47,7 @@ std::vector<Term> terms() {
       {"sun_shadows", [](scene::Scene& s) { s.sun->shadows.reset(); }},
       {"occlusion", [](scene::Scene& s) { s.ambient->occlusion_m = 0.0; }},
       {"caustics", [](scene::Scene& s) { s.sun->caustics.reset(); }},
+      {"shafts", [](scene::Scene& s) { s.sun->shafts.reset(); }},
       {"forward_scatter", [](scene::Scene& s) { s.water->forward_scatter.reset(); }},
       {"snow", [](scene::Scene& s) { s.water->snow.reset(); }},
       {"waves", [](scene::Scene& s) { s.water->waves.reset(); }},

@@ -44,6 +44,8 @@ std::vector<KnobSetting> settings_of(bool quick) {
        [&](PictureDetail& d, double v) { d.visibility_step = whole(v); });
   knob("occlusion_samples", {0.25, 0.5, 1.0, 2.0, 4.0},
        [](PictureDetail& d, double v) { d.occlusion_samples = v; });
+  knob("shaft_samples", {0.25, 0.5, 1, 2},
+       [&](PictureDetail& d, double v) { d.shaft_samples = v; });
   knob("inscatter_samples", {1, 2, 4, 8, 16},
        [&](PictureDetail& d, double v) { d.inscatter_samples = whole(v); });
   knob("waves", {4, 12, 24, 48}, [&](PictureDetail& d, double v) { d.waves = whole(v); });

@@ -11,6 +11,8 @@
 #include "engine/render/renderer.hpp"
 #include "engine/scene/shapes.hpp"
 #include "engine/scene/sun_position.hpp"
+#include "shared/phase.h"
+#include "shared/visibility.h"
 #include "testbed/sensors/readback.hpp"
 #include "testbed/sensors/session.hpp"
 #include "tests/support/gpu_fixture.hpp"
@@ -106,7 +108,7 @@ TEST_F(Light, WhatIsNotNamedIsNotInTheGraph) {
   EXPECT_NE(plan.find("sun shadows"), std::string::npos);
   scene.sun->shadows.reset();
   NERITIC_ASSERT_OK(const auto without, render_one(device(), scene, &plan));
-  for (const char* pass : {"shadows", "visibility", "caustics"})
+  for (const char* pass : {"shadows", "visibility", "caustics", "shafts"})
     EXPECT_EQ(plan.find(pass), std::string::npos) << pass;
 }
 
@@ -170,6 +172,81 @@ TEST_F(Light, ASineWavesFirstFocusLiesWhereTheFormulaSays) {
   double crest = 0.0;
   for (std::uint32_t x = 0; x < 256; ++x) crest = std::max(crest, double(light[x * 4]));
   EXPECT_NEAR(1.0 / (1.0 - 1.0 / crest), 2.028, 0.04);
+}
+
+// Open water under a sun in the zenith, seen level from 3 m deep.
+scene::Scene open_water(double fov_deg) {
+  scene::Scene scene;
+  scene.path = "test";
+  scene.sun = scene::Sun{.elevation_rad = radians(90.0)};
+  scene.water = scene::Water{.type = "IB", .scattering = true};
+  scene::Camera camera;
+  camera.name = "eye";
+  camera.width = 160;
+  camera.height = 96;
+  camera.vertical_fov_rad = radians(fov_deg);
+  camera.exposure.fixed_ev = 13.0;
+  camera.terms.linear = true;
+  camera.mount.pose.position_m = {0.0, -3.0, 0.0};
+  scene.cameras.push_back(camera);
+  return scene;
+}
+
+TEST_F(Light, ASightThroughAShadowLosesWhatItsWaterWouldScatter) {
+  // A slab between 4 and 6 m ahead, 2 m over the sight.
+  const auto with = [&](bool shafts) {
+    scene::Scene scene = open_water(8.0);
+    scene.sun->shadows = scene::SunShadows{.cascades = 1, .reach_m = 20.0};
+    if (shafts) scene.sun->shafts = scene::Shafts{.samples = 64};
+    add_box(scene, {30.0, 0.1, 2.0}, {0.0, -1.0, -5.0});
+    auto result = render_one(device(), std::move(scene), nullptr);
+    EXPECT_TRUE(result.ok());
+    return double(result->cameras[0].eyes[0].linear.at(80, 48, 1));
+  };
+  const scene::Scene scene = open_water(8.0);
+  render::FrameState state;
+  NERITIC_ASSERT_OK(
+      const shared::Lighting light,
+      render::make_lighting(scene, state, Vec3(0.0, -3.0, 0.0), scene.cameras[0].exposure, false));
+  // What a level sight is sent of the beam, and of the light round it (shaders/shared/water.glsl).
+  const double particles = light.particle_scattering.y, water = light.water_scattering.y;
+  const double direct =
+      light.direct_share * std::exp(-3.0 * (particles * (1.0 - shared::kParticleG) + water));
+  const double beam = direct * (particles * shared::henyey_greenstein(0.0f, shared::kParticleG) +
+                                water * shared::sea_water_phase(0.0f));
+  const double round = (1.0 - direct) / 0.8 *
+                       (particles * shared::henyey_greenstein(0.0f, shared::kDiffuseG) +
+                        water * shared::sea_water_phase(0.0f));
+  const double core = std::exp(-shared::kOutOfCore * 3.0 * particles);
+  const double c = light.beam_attenuation.y;
+  const double lost = beam / (beam + round) * core * (std::exp(-4.0 * c) - std::exp(-6.0 * c));
+  ASSERT_GT(lost, 0.01);
+  EXPECT_NEAR(1.0 - with(true) / with(false), lost, 0.06 * lost);
+}
+
+TEST_F(Light, ShaftsOfWavesKeepTheMeanAndFlatWaterHasNone) {
+  const auto picture = [&](bool shafts, double wind_m_s) {
+    scene::Scene scene = open_water(70.0);
+    scene.sun->caustics = scene::Caustics{.wind_m_s = wind_m_s};
+    if (shafts) scene.sun->shafts = scene::Shafts{};
+    auto result = render_one(device(), std::move(scene), nullptr);
+    EXPECT_TRUE(result.ok());
+    std::vector<double> green;
+    const ImageF32& linear = result->cameras[0].eyes[0].linear;
+    for (std::uint32_t y = 0; y < linear.height; ++y)
+      for (std::uint32_t x = 0; x < linear.width; ++x) green.push_back(linear.at(x, y, 1));
+    return green;
+  };
+  const auto even = picture(false, 4.0), waves = picture(true, 4.0), flat = picture(true, 0.0);
+  double sum = 0.0, expected = 0.0, most = 0.0;
+  for (std::size_t i = 0; i < even.size(); ++i) {
+    sum += waves[i];
+    expected += even[i];
+    most = std::max(most, std::abs(waves[i] / even[i] - 1.0));
+    EXPECT_NEAR(flat[i], even[i], 1e-3 * even[i]);
+  }
+  EXPECT_NEAR(sum / expected, 1.0, 0.01);
+  EXPECT_GT(most, 0.02);
 }
 
 TEST(SunPosition, NoonAtTheTropicOnMidsummerIsInTheZenithAndEveningInTheWest) {

@@ -106,6 +106,7 @@ TEST(QualityGovernor, LightComesDownKnobByKnob) {
     EXPECT_LE(now.inscatter_samples, before.inscatter_samples);
     EXPECT_LE(now.waves, before.waves);
     EXPECT_LE(now.scatter_levels, before.scatter_levels);
+    EXPECT_LE(now.shaft_samples, before.shaft_samples);
     EXPECT_LE(now.particles, before.particles);
     EXPECT_EQ(now == camera, light == 0);
     before = now;

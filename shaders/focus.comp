@@ -1,0 +1,50 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+// Depth of field: a pixel gathers what spreads over it. A sample counts where its own spot reaches this pixel, by
+// its light over the spot's area; what lies behind a sharper surface does not spread over that.
+#include "shared/exposure.h"
+#include "shared/lighting.h"
+
+layout(local_size_x = kShadeGroup, local_size_y = kShadeGroup) in;
+
+layout(set = 0, binding = kExposureHdr) uniform texture2DArray hdr_image;
+layout(set = 0, binding = kExposureOther) uniform texture2DArray depth_image;
+layout(set = 0, binding = kExposureOut, rgba16f) writeonly uniform image2DArray out_image;
+layout(set = 0, binding = kExposureData, scalar) uniform Data { FocusParams focus; };
+
+float distance_at(ivec3 at) {
+  float depth = texelFetch(depth_image, at, 0).r;
+  return depth > 0.0 ? focus.near_m / depth : 1e9;
+}
+
+void main() {
+  ivec3 at = ivec3(gl_GlobalInvocationID);
+  ivec2 size = imageSize(out_image).xy;
+  if (at.x >= size.x || at.y >= size.y) return;
+  float own_m = distance_at(at);
+  float own_px = max(spot_radius_px(focus, own_m), 0.5);
+  // A pixel is 1 / pi of the disk of radius 1.
+  vec4 sum = vec4(texelFetch(hdr_image, at, 0).rgb, 1.0) * (0.3183 / (own_px * own_px));
+  // A spiral of even density out to the widest spot, turned pixel by pixel.
+  uvec2 b = uvec2(at.xy) & 3u;
+  float turn = float((b.x * 4u + ((b.y + b.x * 2u) & 3u))) * (6.2831853 / 16.0);
+  // Samples are as dense as their number over the disk; the middle stands for one pixel.
+  float each_px2 = focus.widest_px * focus.widest_px / float(focus.samples);
+  for (uint i = 0u; i < focus.samples; ++i) {
+    float r = focus.widest_px * sqrt((float(i) + 0.5) / float(focus.samples));
+    float angle = turn + 2.39996323 * float(i);
+    ivec2 offset = ivec2(round(r * vec2(cos(angle), sin(angle))));
+    if (offset == ivec2(0)) continue;
+    ivec3 other = ivec3(clamp(at.xy + offset, ivec2(0), size - 1), at.z);
+    float other_m = distance_at(other);
+    float spot_px = max(spot_radius_px(focus, other_m), 0.5);
+    // From behind a surface nothing spreads farther than that surface's own spot.
+    if (other_m > own_m * 1.02) spot_px = min(spot_px, max(own_px, 0.5));
+    float reaches = clamp(spot_px - r + 0.5, 0.0, 1.0);
+    sum += vec4(texelFetch(hdr_image, other, 0).rgb, 1.0) * (reaches * each_px2 / (spot_px * spot_px));
+  }
+  imageStore(out_image, at, vec4(min(sum.rgb / sum.a, vec3(60000.0)), 1.0));
+}

@@ -1,0 +1,41 @@
+// What focus and shutter do to a picture before its lens: bindings and parameters of the focus and
+// shutter passes.
+#ifndef NERITIC_SHARED_EXPOSURE_H
+#define NERITIC_SHARED_EXPOSURE_H
+#include "shared/types.h"
+
+NERITIC_SHARED_BEGIN
+
+#ifdef __cplusplus
+using glm::abs;
+using glm::min;
+#endif
+
+struct FocusParams {
+  float near_m;
+  float focus_m;
+  float opening_px;  // half the lens's opening (m) times the picture's focal length (pixels)
+  float widest_px;   // no spot has a larger radius
+  uint samples;
+};
+
+// Radius of a point's spot on the picture, pixels: thin lens, planar distances (opening / 2 |1 / z
+// - 1 / focus|).
+NERITIC_INLINE float spot_radius_px(FocusParams focus, float planar_m) {
+  return min(focus.opening_px * abs(1.0f / planar_m - 1.0f / focus.focus_m), focus.widest_px);
+}
+
+struct ShutterParams {
+  float exposed;  // share of the time to the next frame that a row is exposed
+  float readout;  // and that the rows are read one after another, from the first to the last
+  uint samples;
+  float farthest_px;  // no sample is farther off along the motion
+};
+
+NERITIC_CONST uint kExposureHdr = 0;
+NERITIC_CONST uint kExposureOther = 1;  // focus: depth; shutter: motion, pixels to the next frame
+NERITIC_CONST uint kExposureOut = 2;
+NERITIC_CONST uint kExposureData = 3;
+
+NERITIC_SHARED_END
+#endif

@@ -1,0 +1,125 @@
+// Focus and shutter on made pictures: an edge out of focus is that of a disk of the thin lens's
+// radius, one that moves is a ramp as long as its way, and a rolling shutter leans it.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <glm/gtc/packing.hpp>
+
+#include "engine/gpu/frames.hpp"
+#include "engine/render/renderer.hpp"
+#include "testbed/sensors/readback.hpp"
+#include "tests/support/gpu_fixture.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+using ExposurePasses = test::GpuTest;
+
+constexpr std::uint32_t kWide = 128, kHigh = 64;
+constexpr double kEdge = 64.0;
+
+gpu::Image image_of(gpu::Device& device, const char* name, const std::function<Vec4(int)>& column) {
+  auto image = gpu::Image::create(
+      device,
+      {name, render::kHdrFormat, kWide, kHigh, 1, 1,
+       VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+       true});
+  EXPECT_TRUE(image.ok());
+  std::vector<std::uint16_t> texels;
+  for (std::uint32_t y = 0; y < kHigh; ++y)
+    for (std::uint32_t x = 0; x < kWide; ++x)
+      for (int i = 0; i < 4; ++i)
+        texels.push_back(glm::packHalf1x16(static_cast<float>(column(static_cast<int>(x))[i])));
+  EXPECT_TRUE(gpu::upload_image(device, *image, std::as_bytes(std::span(texels))).ok());
+  return std::move(*image);
+}
+
+// The green of what a pass makes of a step from 0 to 1 at kEdge, beside another even image.
+class Made {
+ public:
+  template <class Declare>
+  Made(gpu::Device& device, const Vec4& other, Declare declare) {
+    auto renderer = render::Renderer::create(device);
+    auto frames = gpu::Frames::create(device);
+    EXPECT_TRUE(renderer.ok() && frames.ok());
+    gpu::Image hdr =
+        image_of(device, "step", [](int x) { return Vec4(Vec3(x < kEdge ? 0.0 : 1.0), 1.0); });
+    gpu::Image beside = image_of(device, "beside", [&](int) { return other; });
+    const graph::ImportState state{.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    graph::Executor executor(**frames);
+    graph::FrameGraph graph;
+    render::GBuffer gbuffer;
+    gbuffer.width = kWide;
+    gbuffer.height = kHigh;
+    gbuffer.depth = gbuffer.motion = graph.import_image(beside, state);
+    const auto out = declare(**renderer, graph, graph.import_image(hdr, state), gbuffer);
+    EXPECT_TRUE(out.ok());
+    ReadbackPool pool;
+    auto pin = pool.declare(graph, device, "made", *out, render::kHdrFormat, kWide, kHigh, 1);
+    EXPECT_TRUE(pin.ok());
+    auto commands = (*frames)->begin();
+    EXPECT_TRUE(executor.run(graph, **commands).ok());
+    auto done = (*frames)->submit();
+    EXPECT_TRUE(done.ok() && (*frames)->wait(*done).ok());
+    for (const std::uint16_t half : (*pin)->template mapped<std::uint16_t>())
+      values_.push_back(glm::unpackHalf1x16(half));
+    device.wait_idle();
+  }
+  double at(std::uint32_t x, std::uint32_t y) const { return values_[(y * kWide + x) * 4 + 1]; }
+  // Where the step lies in a row: how much of it is dark.
+  double edge(std::uint32_t y) const {
+    double sum = 0.0;
+    for (std::uint32_t x = 0; x < kWide; ++x) sum += 1.0 - at(x, y);
+    return sum;
+  }
+
+ private:
+  std::vector<float> values_;
+};
+
+TEST_F(ExposurePasses, AnEdgeOutOfFocusIsThatOfTheThinLenssDisk) {
+  // near 0.05 m; depth 0.05 / z. A lens of 8 mm seen at 2000 pixels: 8 (1 / z - 1 / 1) pixels.
+  const auto focussed = [&](double z_m) {
+    return Made(device(), Vec4(0.05 / z_m),
+                [](render::Renderer& r, auto& graph, auto hdr, auto& g) {
+                  return r.declare_focus(graph, "", hdr, g, {0.05f, 1.0f, 8.0f, 12.0f, 200});
+                });
+  };
+  const Made sharp = focussed(1.0);
+  EXPECT_NEAR(sharp.at(62, 30), 0.0, 1e-3);
+  EXPECT_NEAR(sharp.at(65, 30), 1.0, 1e-3);
+  // At half the distance the radius is 8 pixels. The part of a disk beyond the chord at half its
+  // radius is 0.1955.
+  const Made soft = focussed(0.5);
+  for (const std::uint32_t y : {20u, 31u, 40u}) {
+    EXPECT_NEAR(0.5 * (soft.at(67, y) + soft.at(68, y)), 1.0 - 0.1955, 0.06);
+    EXPECT_NEAR(0.5 * (soft.at(59, y) + soft.at(60, y)), 0.1955, 0.06);
+    EXPECT_NEAR(soft.at(54, y), 0.0, 0.01);
+    EXPECT_NEAR(soft.at(74, y), 1.0, 0.01);
+  }
+}
+
+TEST_F(ExposurePasses, WhatMovesBecomesARampAndARollingShutterLeansIt) {
+  const auto exposed = [&](shared::ShutterParams params) {
+    return Made(device(), Vec4(8.0, 0.0, 0.0, 0.0),
+                [=](render::Renderer& r, auto& graph, auto hdr, auto& g) {
+                  return r.declare_shutter(graph, "", hdr, g, params);
+                });
+  };
+  // 8 pixels to the next frame, open for half of that: 4 pixels.
+  const Made blurred = exposed({0.5f, 0.0f, 32, 32.0f});
+  for (int i = -3; i <= 2; ++i) {
+    const double middle = i + 0.5;  // of the pixel, from the edge
+    EXPECT_NEAR(blurred.at(static_cast<std::uint32_t>(64 + i), 10),
+                std::clamp(0.5 + middle / 4.0, 0.0, 1.0), 0.03)
+        << i;
+  }
+  EXPECT_NEAR(blurred.edge(10), kEdge, 0.05);
+  // Rows are read over one frame's time: the last one sees it 8 pixels on from the first.
+  const Made leant = exposed({0.01f, 1.0f, 4, 32.0f});
+  for (const std::uint32_t y : {0u, 16u, 32u, 63u})
+    EXPECT_NEAR(leant.edge(y), kEdge + 8.0 * ((y + 0.5) / kHigh - 0.5), 0.1) << y;
+}
+
+}  // namespace
+}  // namespace neritic::testbed
