@@ -228,7 +228,7 @@ class DrawListBuilder {
   bool add_visible_part(const GpuPrimitive& primitive, const Seen& seen) {
     const std::size_t before = out_.ranges.size();
     culling_.append_visible(primitive.clusters, primitive.first_index, seen.origin_from_primitive,
-                            out_.ranges);
+                            out_.ranges, options_.mesh_error_px);
     std::uint32_t count = 0;
     for (std::size_t r = before; r < out_.ranges.size(); ++r) count += out_.ranges[r].index_count;
     if (count == 0 || count + kLeastSaved <= primitive.index_count) return true;
