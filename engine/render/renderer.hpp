@@ -202,6 +202,10 @@ class Renderer {
                                             const PictureFilter& filter, gpu::Pipeline& pipeline,
                                             graph::ImageHandle in, std::uint32_t width,
                                             std::uint32_t height, std::uint32_t layers);
+  // Sorts the tiles of a picture of one layer for shading.
+  Result<graph::BufferHandle> declare_shade_tiles(graph::FrameGraph& graph,
+                                                  const std::string& prefix, const GBuffer& gbuffer,
+                                                  const shared::ShadeTilesPush& push);
   enum class RasterStage { kGeometry, kGeometryMasked, kShape, kSurface, kForward };
   // stage, topology, motion, emissive, clipped, view mask, the material's flags, parts.
   using RasterKey = std::tuple<RasterStage, VkPrimitiveTopology, bool, bool, bool, std::uint32_t,
@@ -250,7 +254,7 @@ class Renderer {
   // By terms, number of lamps, visibility's step, inscatter's samples, whether the sea is seen.
   std::map<std::array<std::uint32_t, 5>, gpu::Pipeline> shade_;
   std::map<VisibilityKnobs, gpu::Pipeline> visibility_;
-  gpu::Pipeline visibility_blur_, caustics_, caustics_resolve_;
+  gpu::Pipeline visibility_blur_, caustics_, caustics_resolve_, shade_tiles_;
   std::map<std::uint32_t, gpu::Pipeline> camera_;            // by terms
   gpu::Sampler tile_sampler_;                                // linear, repeating
   std::map<std::uint32_t, gpu::Pipeline> hidden_pipelines_;  // by view mask
