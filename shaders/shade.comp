@@ -22,6 +22,7 @@ layout(set = 0, binding = kShadeEmissive) uniform texture2DArray emissive_image;
 layout(set = 0, binding = kShadeHdr, rgba16f) writeonly uniform image2DArray hdr_image;
 layout(set = 0, binding = kShadeScattered, rgba16f) writeonly uniform image2DArray scattered_image;
 layout(set = 0, binding = kShadeWaves, scalar) uniform Sea { Waves sea; };
+layout(set = 0, binding = kShadeTiles, scalar) readonly buffer Tiles { uint tiles[]; };
 
 layout(set = 0, binding = kShadeSeen) uniform texture2DArray seen_image;
 layout(set = 0, binding = kShadeCaustics) uniform sampler2DArray caustics_image;
@@ -34,6 +35,8 @@ layout(constant_id = kSpecLamps) const uint kLamps = kMaxLamps;
 layout(constant_id = kSpecSeenStep) const uint kSeenStep = 2;
 layout(constant_id = kSpecSeaSeen) const bool kSeaSeen = true;
 layout(constant_id = kSpecGlowSamples) const uint kGlowSamples = 4;
+layout(constant_id = kSpecTiled) const bool kTiled = false;
+layout(constant_id = kSpecSurfaces) const bool kSurfaces = true;
 bool light_has(uint term) { return (kTerms & term) != 0u; }
 uint lamp_count() { return kLamps; }
 uint glow_samples() { return kGlowSamples; }
@@ -108,10 +111,14 @@ Seen seen_at(ivec3 at, float planar_m) {
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
   at.y += int(push.first_group * kShadeGroup);
+  if (kTiled) {  // of one layer
+    uint tile = tiles[push.first_tile + gl_WorkGroupID.x];
+    at = ivec3(uvec2(tile & 0xffffu, tile >> 16) * kShadeGroup + gl_LocalInvocationID.xy, 0);
+  }
   ivec2 size = imageSize(hdr_image).xy;
   if (at.x >= size.x || at.y >= size.y) return;
   // The layer by workgroup: so drivers see that a whole group reads one view.
-  uint layer = gl_WorkGroupID.z;
+  uint layer = kTiled ? 0u : gl_WorkGroupID.z;
   vec3 ray = views[layer].ray_corner + (float(at.x) + 0.5) * views[layer].ray_dx + (float(at.y) + 0.5) * views[layer].ray_dy;
   float eye_depth_m = light.origin_depth_m - views[layer].eye.y;
   float stretch = length(ray);
@@ -122,10 +129,10 @@ void main() {
     if (light_has(kLightForwardScatter)) imageStore(scattered_image, at, vec4(0.0));
     return;
   }
-  bool hit = depth > 0.0;
+  bool hit = kSurfaces && depth > 0.0;
   float planar_m = hit ? views[layer].near_m / depth : kForever_m;
   vec4 material = texelFetch(material_image, at, 0);
-  vec3 emitted = light_has(kLightEmissive) ? texelFetch(emissive_image, at, 0).rgb * light.emissive_scale : vec3(0.0);
+  vec3 emitted = kSurfaces && light_has(kLightEmissive) ? texelFetch(emissive_image, at, 0).rgb * light.emissive_scale : vec3(0.0);
   Surface s;
   s.position = views[layer].eye + ray * planar_m;
   s.normal = octahedral_decode(texelFetch(normal_image, at, 0).rg);
@@ -136,7 +143,7 @@ void main() {
   s.occlusion = material.z;
   s.reflectance = material.w;
   vec3 radiance = emitted;
-  if (material.w < 0.9) {
+  if (kSurfaces && material.w < 0.9) {
     Seen seen = seen_at(at, planar_m);
     seen.caustic = caustic_at(s.position, planar_m * length(views[layer].ray_dx));
     radiance += shade_surface(s, -direction, seen);

@@ -28,6 +28,8 @@ ClusterCulling::ClusterCulling(const ViewSet& set) {
       view.offset_m[i] = -glm::dot(view.normal[i], eye_m);
     }
     view.offset_m[kPlanes - 1] -= desc.near_m;
+    view.near_m = desc.near_m;
+    view.pixels = std::max(set.width / (t.right - t.left), set.height / (t.top - t.bottom));
     farthest_eye_m_ = std::max(farthest_eye_m_, glm::length(eye_m));
     views_.push_back(view);
   }
@@ -41,8 +43,10 @@ class ClusterCulling::Walk {
   static constexpr std::uint8_t kUnseen = 0xff;
 
   Walk(const ClusterCulling& culling, std::span<const ClusterNode> nodes, std::uint32_t first_index,
-       const Mat4& origin_from_primitive, std::vector<IndexRange>& out)
+       const Mat4& origin_from_primitive, std::vector<IndexRange>& out, double mesh_error_px)
       : culling_(culling),
+        mesh_error_px_(mesh_error_px),
+        scale_(largest_stretch(origin_from_primitive)),
         nodes_(nodes),
         first_index_(first_index),
         out_(out),
@@ -89,8 +93,12 @@ class ClusterCulling::Walk {
       whole |= crossed[i] == 0;
     }
     if (!seen) return;
-    if (whole || node.end == index + 1) {
-      append(node);
+    if (mesh_error_px_ > 0.0 && node.coarse_count > 0 && coarse_fits(node)) {
+      append(node.coarse_first, node.coarse_count);
+      return;
+    }
+    if ((whole && mesh_error_px_ <= 0.0) || node.end == index + 1) {
+      append(node.first_index, node.index_count);
       return;
     }
     visit(index + 1, crossed);
@@ -110,19 +118,36 @@ class ClusterCulling::Walk {
     return crossed;
   }
 
-  void append(const ClusterNode& node) {
-    const std::uint32_t first = first_index_ + node.first_index;
+  bool coarse_fits(const ClusterNode& node) const {
+    for (std::size_t i = 0; i < culling_.views_.size(); ++i) {
+      const View& view = culling_.views_[i];
+      // The near plane's: what lies ahead.
+      const double ahead_m = glm::dot(local_[i].normal[kPlanes - 1], node.center_m) +
+                             local_[i].offset_m[kPlanes - 1] + view.near_m -
+                             local_[i].stretch[kPlanes - 1] * node.radius_m;
+      if (node.coarse_error_m * scale_ * view.pixels >
+          mesh_error_px_ * std::max(ahead_m, view.near_m))
+        return false;
+    }
+    return true;
+  }
+
+  // Beside coarser versions what lies between two runs is not there, or is drawn otherwise.
+  void append(std::uint32_t from, std::uint32_t count) {
+    const std::uint32_t first = first_index_ + from;
+    const std::uint32_t gap = mesh_error_px_ > 0.0 ? 0 : 3 * kGapTriangles;
     if (out_.size() > ranges_before_) {
       IndexRange& last = out_.back();
-      if (first - (last.first_index + last.index_count) <= 3 * kGapTriangles) {
-        last.index_count = first + node.index_count - last.first_index;
+      if (first - (last.first_index + last.index_count) <= gap) {
+        last.index_count = first + count - last.first_index;
         return;
       }
     }
-    out_.push_back({first, node.index_count});
+    out_.push_back({first, count});
   }
 
   const ClusterCulling& culling_;
+  double mesh_error_px_, scale_;
   std::span<const ClusterNode> nodes_;
   std::uint32_t first_index_;
   std::vector<IndexRange>& out_;
@@ -132,10 +157,10 @@ class ClusterCulling::Walk {
 };
 
 void ClusterCulling::append_visible(std::span<const ClusterNode> nodes, std::uint32_t first_index,
-                                    const Mat4& origin_from_primitive,
-                                    std::vector<IndexRange>& out) const {
+                                    const Mat4& origin_from_primitive, std::vector<IndexRange>& out,
+                                    double mesh_error_px) const {
   if (nodes.empty()) return;
-  Walk(*this, nodes, first_index, origin_from_primitive, out).run();
+  Walk(*this, nodes, first_index, origin_from_primitive, out, mesh_error_px).run();
 }
 
 }  // namespace neritic::render

@@ -22,9 +22,11 @@ class ClusterCulling {
   explicit ClusterCulling(const ViewSet& views);
 
   // Appends the runs (in their order, from first_index on) of what some view can see of an
-  // instance.
+  // instance. mesh_error_px: coarser versions of nodes may stand for them where they differ by no
+  // more pixels in any view; 0: none does.
   void append_visible(std::span<const ClusterNode> nodes, std::uint32_t first_index,
-                      const Mat4& origin_from_primitive, std::vector<IndexRange>& out) const;
+                      const Mat4& origin_from_primitive, std::vector<IndexRange>& out,
+                      double mesh_error_px = 0.0) const;
 
  private:
   static constexpr std::size_t kPlanes = 5;  // four sides and the near plane; there is no far plane
@@ -32,6 +34,7 @@ class ClusterCulling {
   struct View {
     std::array<Vec3, kPlanes> normal{};
     std::array<double, kPlanes> offset_m{};
+    double near_m = 0.0, pixels = 0.0;  // a unit of tangent
   };
   class Walk;
   std::vector<View> views_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "engine/scene/model.hpp"
+#include "engine/scene/mesh_levels.hpp"
 
 namespace neritic::render {
 namespace {
@@ -129,6 +129,53 @@ std::vector<ClusterNode> build_clusters(std::span<const Vec3f> positions,
   for (const std::uint32_t i : indices)
     if (!is_finite(Vec3(positions[i]))) return {};
   return ClusterBuilder(positions, indices).build(indices);
+}
+
+void add_coarse_clusters(const scene::Primitive& primitive, std::vector<ClusterNode>& nodes,
+                         std::vector<std::uint32_t>& indices) {
+  if (nodes.empty() || !scene::MeshSimplifier::accepts(primitive)) return;
+  const scene::MeshSimplifier simplifier(primitive);
+  struct Made {
+    std::vector<std::uint32_t> places;
+    double moved_m = 0.0;
+    std::uint32_t height = 0;  // over the leaves
+  };
+  std::vector<Made> made(nodes.size());
+  std::vector<std::uint32_t> order;
+  // Children come after their parents.
+  for (auto n = static_cast<std::uint32_t>(nodes.size()); n-- > 0;) {
+    ClusterNode& node = nodes[n];
+    if (node.end == n + 1) {
+      made[n].places = simplifier.places_of(
+          std::span<const std::uint32_t>(indices).subspan(node.first_index, node.index_count));
+      continue;
+    }
+    const Made &a = made[n + 1], &b = made[nodes[n + 1].end];
+    std::vector<std::uint32_t> both = a.places;
+    both.insert(both.end(), b.places.begin(), b.places.end());
+    scene::MeshSimplifier::Coarse coarse = simplifier.coarser(both, both.size() / 6, true);
+    made[n].height = std::max(a.height, b.height) + 1;
+    made[n].moved_m = std::max(a.moved_m, b.moved_m);
+    if (coarse.places.empty() || 4 * coarse.places.size() > 3 * both.size()) {
+      made[n].places = std::move(both);  // its border is nearly all of it
+      continue;
+    }
+    made[n].moved_m += coarse.moved_m;
+    made[n].places = std::move(coarse.places);
+    node.coarse_count = static_cast<std::uint32_t>(made[n].places.size());
+    node.coarse_error_m =
+        std::max(made[n].moved_m, simplifier.edge_m(made[n].places) / scene::kEdgeShare);
+    order.push_back(n);
+  }
+  // Neighbours of one height follow each other, so that they are one draw.
+  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
+    return std::pair(made[a].height, a) < std::pair(made[b].height, b);
+  });
+  for (const std::uint32_t n : order) {
+    nodes[n].coarse_first = static_cast<std::uint32_t>(indices.size());
+    const std::vector<std::uint32_t> vertices = simplifier.vertices_of(made[n].places);
+    indices.insert(indices.end(), vertices.begin(), vertices.end());
+  }
 }
 
 }  // namespace neritic::render

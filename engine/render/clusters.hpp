@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/core/math.hpp"
+#include "engine/scene/model.hpp"
 
 namespace neritic::render {
 
@@ -21,6 +22,9 @@ struct ClusterNode {
   double radius_m = 0.0;                           // of a sphere that holds every vertex
   std::uint32_t first_index = 0, index_count = 0;  // from the primitive's first index
   std::uint32_t end = 0;                           // node after this one's descendants
+  // A coarser version of all that (add_coarse_clusters), with the same border; count 0: none.
+  std::uint32_t coarse_first = 0, coarse_count = 0;  // from the primitive's first index
+  double coarse_error_m = 0.0;                       // as scene::MeshLevel has it
 };
 
 // Puts the triangles into clusters (indices: three a triangle; within a cluster they keep their
@@ -28,5 +32,11 @@ struct ClusterNode {
 // position is not finite. The same input gives the same order on every machine.
 std::vector<ClusterNode> build_clusters(std::span<const Vec3f> positions,
                                         std::vector<std::uint32_t>& indices);
+
+// Gives inner nodes coarser versions, from the leaves up: of what its two children have, some half
+// of the triangles. A node's border is that of the mesh itself, so that neighbours fit whichever
+// version each is drawn with. indices: the mesh's, to which theirs are appended.
+void add_coarse_clusters(const scene::Primitive& primitive, std::vector<ClusterNode>& nodes,
+                         std::vector<std::uint32_t>& indices);
 
 }  // namespace neritic::render

@@ -69,7 +69,8 @@ class DrawListBuilder {
         options_(options),
         origin_(views.origin_m()),
         larger_of_(options.least_drawn ? scene.objects.size() : 0),
-        culling_(views) {
+        culling_(views),
+        spheres_(views) {
     for (const ViewDesc& view : views.views) {
       const FrustumTangents& t = view.tangents;
       eyes_.push_back(
@@ -148,7 +149,7 @@ class DrawListBuilder {
       const double error_m = kFloatError * (glm::length(Vec3(m[3])) +
                                             stretch * (glm::length(own_center_m) + own_radius_m));
       const DrawnLarger* larger = larger_of_.empty() ? nullptr : larger_of_[a.object];
-      if (bounded && !larger && !any_view_sees(views_, center, own_radius_m * stretch + error_m))
+      if (bounded && !larger && !spheres_.may_see(center, own_radius_m * stretch + error_m))
         continue;
       const double order_m = blend ? center_m : nearness(center_m, own_radius_m * stretch);
       std::uint32_t level = 0;
@@ -228,7 +229,7 @@ class DrawListBuilder {
   bool add_visible_part(const GpuPrimitive& primitive, const Seen& seen) {
     const std::size_t before = out_.ranges.size();
     culling_.append_visible(primitive.clusters, primitive.first_index, seen.origin_from_primitive,
-                            out_.ranges);
+                            out_.ranges, options_.mesh_error_px);
     std::uint32_t count = 0;
     for (std::size_t r = before; r < out_.ranges.size(); ++r) count += out_.ranges[r].index_count;
     if (count == 0 || count + kLeastSaved <= primitive.index_count) return true;
@@ -267,6 +268,7 @@ class DrawListBuilder {
   const Vec3 origin_;
   std::vector<const DrawnLarger*> larger_of_;  // an object; empty: none is
   const ClusterCulling culling_;
+  const SphereCulling spheres_;
   struct Eye {
     Vec3 position_m, ahead;
     double pixels;  // a unit of tangent

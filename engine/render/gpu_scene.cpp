@@ -47,7 +47,7 @@ class GpuSceneBuilder {
   GpuSceneBuilder(const scene::Scene& scene, GpuScene& out) : scene_(scene), out_(out) {}
 
   Status add_models(MaterialBuilder& materials, GeometryBuilder& geometry) {
-    const auto levels = levels_of_primitives();
+    auto prepared = prepared_meshes();
     std::size_t next = 0;
     for (std::size_t m = 0; m < scene_.models.size(); ++m) {
       first_group_.emplace_back();
@@ -56,7 +56,7 @@ class GpuSceneBuilder {
         for (const scene::Primitive& p : mesh.primitives) {
           NERITIC_TRY(const std::uint32_t material,
                       materials.material_of(m, p.material, !p.colors.empty()));
-          out_.groups_.push_back({geometry.add(p, material, levels[next++]), {}});
+          out_.groups_.push_back({geometry.add(p, material, std::move(prepared[next++])), {}});
           GpuPrimitive& added = out_.groups_.back().primitive;
           added.closed = may_be_closed(scene_.models[m]->materials, p.material, added) &&
                          is_closed(p.positions, p.indices);
@@ -93,23 +93,16 @@ class GpuSceneBuilder {
   }
 
  private:
-  // A larger mesh surrounds the camera, or lies so far off that nobody sees it: its clusters are
-  // culled instead, and making its levels would take longer than the rest of a start.
-  static constexpr double kLargest_m = 12.0;
-
-  // The coarser levels of every model's primitives, in their order. On all cores: a start waits.
-  std::vector<std::vector<scene::MeshLevel>> levels_of_primitives() const {
+  // Every model's primitives, in their order. On all cores: a start waits.
+  std::vector<PreparedMesh> prepared_meshes() const {
     std::vector<const scene::Primitive*> all;
     for (const auto& model : scene_.models)
       for (const scene::Mesh& mesh : model->meshes)
         for (const scene::Primitive& p : mesh.primitives) all.push_back(&p);
-    std::vector<std::vector<scene::MeshLevel>> out(all.size());
+    std::vector<PreparedMesh> out(all.size());
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
-      for (std::size_t i = next++; i < all.size(); i = next++)
-        if (!all[i]->bounds.empty() &&
-            glm::length(all[i]->bounds.max - all[i]->bounds.min) < kLargest_m)
-          out[i] = scene::mesh_levels(*all[i]);
+      for (std::size_t i = next++; i < all.size(); i = next++) out[i] = prepare_mesh(*all[i]);
     };
     std::vector<std::thread> helpers;
     const std::size_t threads = std::min<std::size_t>(

@@ -87,8 +87,22 @@ Result<gpu::Buffer> filled(gpu::Device& device, const char* name, const std::vec
 
 }  // namespace
 
+PreparedMesh prepare_mesh(const scene::Primitive& p) {
+  // A larger mesh surrounds the camera: parts of it are near, others far.
+  constexpr double kLargest_m = 12.0;
+  PreparedMesh out;
+  out.indices = p.indices;
+  const bool large = !p.bounds.empty() && glm::length(p.bounds.max - p.bounds.min) > kLargest_m;
+  if (p.topology == scene::Topology::kTriangles && p.joints.empty() && p.targets.empty()) {
+    out.clusters = build_clusters(p.positions, out.indices);
+    if (large) add_coarse_clusters(p, out.clusters, out.indices);
+  }
+  if (!large || out.clusters.empty()) out.levels = scene::mesh_levels(p);
+  return out;
+}
+
 GpuPrimitive GeometryBuilder::add(const scene::Primitive& p, std::uint32_t material,
-                                  std::span<const scene::MeshLevel> levels) {
+                                  PreparedMesh prepared) {
   GpuPrimitive g;
   g.topology = p.topology;
   g.first_index = static_cast<std::uint32_t>(indices_.size());
@@ -97,11 +111,12 @@ GpuPrimitive GeometryBuilder::add(const scene::Primitive& p, std::uint32_t mater
   g.vertex_count = static_cast<std::uint32_t>(p.positions.size());
   g.material = material;
   largest_mesh_ = std::max(largest_mesh_, g.vertex_count);
-  std::vector<std::uint32_t> indices = p.indices, order;
+  std::vector<std::uint32_t>& indices = prepared.indices;
+  std::vector<std::uint32_t> order;
   std::vector<std::vector<std::uint32_t>> coarser;
-  for (const scene::MeshLevel& level : levels) coarser.push_back(level.indices);
+  for (const scene::MeshLevel& level : prepared.levels) coarser.push_back(level.indices);
   if (p.topology == scene::Topology::kTriangles && p.joints.empty() && p.targets.empty()) {
-    g.clusters = build_clusters(p.positions, indices);
+    g.clusters = std::move(prepared.clusters);
     order = order_by_use(indices, p.positions.size());
     std::vector<std::uint32_t> place(order.size());
     for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
@@ -126,7 +141,7 @@ GpuPrimitive GeometryBuilder::add(const scene::Primitive& p, std::uint32_t mater
     std::iota(order.begin(), order.end(), 0u);
   }
   indices_.insert(indices_.end(), indices.begin(), indices.end());
-  add_levels(g, coarser, levels);
+  add_levels(g, coarser, prepared.levels);
   for (const std::uint32_t vertex : order) add_vertex(p, vertex);
   add_skin(g, p, order);
   add_morphs(g, p);

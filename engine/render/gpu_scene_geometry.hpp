@@ -14,11 +14,19 @@ struct GpuSceneGeometry {
   gpu::Buffer positions, surfaces, indices, skin, morphs;
 };
 
+// What is made of a primitive before it is uploaded. Pure; any thread.
+struct PreparedMesh {
+  std::vector<std::uint32_t> indices;  // of its vertices: the mesh, then coarser clusters
+  std::vector<ClusterNode> clusters;
+  std::vector<scene::MeshLevel> levels;
+};
+PreparedMesh prepare_mesh(const scene::Primitive& primitive);
+
 class GeometryBuilder {
  public:
   // Appends the primitive's vertices, indices, skin and morph targets, and its coarser levels.
   GpuPrimitive add(const scene::Primitive& primitive, std::uint32_t material,
-                   std::span<const scene::MeshLevel> levels = {});
+                   PreparedMesh prepared);
   // Uploads the streams; nothing is added after it. Errors: a stream is larger than the device can
   // read, or there is no memory.
   Result<GpuSceneGeometry> finish(gpu::Device& device);

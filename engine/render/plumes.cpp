@@ -14,6 +14,8 @@ constexpr double kFreeFall_m_s2 = 9.81, kDensity_kg_m3 = 1026.0, kAir_pa = 10132
 constexpr double kTension_n_m = 0.0735;
 // Deviation of the logarithm of bubbles' radii: a few large caps among many small ones.
 constexpr double kBubbleSpread = 0.8;
+// Bubbles of a smaller diameter slow down in proportion.
+constexpr double kSmall_m = 1.3e-3;
 // Share of a breath that breathing out takes, and the most bubbles that stand for one.
 constexpr double kOutShare = 0.45, kMostBubbles = 400.0;
 // The plume drags water up with it, m/s.
@@ -62,10 +64,10 @@ WorldParticle risen(const scene::BubbleSource& source, const Vec3& from_m, doubl
 double bubble_speed_m_s(double radius_m) {
   // Mendelson 1967, AIChE Journal 13, 250: like a wave as long as the bubble's girth; for diameters
   // over 1.3 mm. Smaller ones slow down in proportion.
-  const double diameter_m = std::max(2.0 * radius_m, 1.3e-3);
+  const double diameter_m = std::max(2.0 * radius_m, kSmall_m);
   const double speed = std::sqrt(2.0 * kTension_n_m / (kDensity_kg_m3 * diameter_m) +
                                  0.5 * kFreeFall_m_s2 * diameter_m);
-  return speed * std::min(2.0 * radius_m / 1.3e-3, 1.0);
+  return speed * std::min(2.0 * radius_m / kSmall_m, 1.0);
 }
 
 void add_bubbles(const scene::MotionSource& motion, const scene::BubbleSource& source,
@@ -85,7 +87,14 @@ void add_bubbles(const scene::MotionSource& motion, const scene::BubbleSource& s
   }
   const RandomKey own{seed, kBubbleStream, number};
   const double first_s = period_s * random_uniform(own, 0);
-  const double oldest_s = source.height_m / (kPlumeRise_m_s + 0.05) + period_s;
+  // The slowest there can be: sqrt(a / d + b d) is least at d = sqrt(a / b), and less for the
+  // smallest.
+  const double smallest_m = radius_m * std::exp(-2.5 * kBubbleSpread);
+  const double slowest_m_s =
+      std::sqrt(2.0 * std::sqrt(kTension_n_m / kDensity_kg_m3 * kFreeFall_m_s2)) *
+          std::min(2.0 * smallest_m / kSmall_m, 1.0) +
+      kPlumeRise_m_s;
+  const double oldest_s = source.height_m / slowest_m_s + period_s;
   const auto last = static_cast<std::int64_t>(std::floor((time_s - first_s) / period_s));
   const auto breaths = static_cast<std::int64_t>(std::ceil(oldest_s / period_s));
   for (std::int64_t breath = last - breaths; breath <= last; ++breath) {

@@ -233,6 +233,10 @@ class Renderer {
                                               const PictureFilter& filter, gpu::Pipeline& pipeline,
                                               graph::ImageHandle hdr, graph::ImageHandle other,
                                               const GBuffer& gbuffer, const Params& params);
+  // Sorts the tiles of a picture of one layer for shading.
+  Result<graph::BufferHandle> declare_shade_tiles(graph::FrameGraph& graph,
+                                                  const std::string& prefix, const GBuffer& gbuffer,
+                                                  const shared::ShadeTilesPush& push);
   enum class RasterStage { kGeometry, kGeometryMasked, kShape, kSurface, kForward };
   // stage, topology, motion, emissive, clipped, view mask, the material's flags, parts; of the
   // forward stage samples of inscatter, else 0.
@@ -283,7 +287,7 @@ class Renderer {
   // By terms, number of lamps, visibility's step, inscatter's samples, whether the sea is seen.
   std::map<std::array<std::uint32_t, 5>, gpu::Pipeline> shade_;
   std::map<VisibilityKnobs, gpu::Pipeline> visibility_;
-  gpu::Pipeline visibility_blur_, caustics_, caustics_resolve_;
+  gpu::Pipeline visibility_blur_, caustics_, caustics_resolve_, shade_tiles_;
   // By terms and number of the sun's maps.
   std::map<std::array<std::uint32_t, 2>, gpu::Pipeline> shafts_;
   gpu::Pipeline shafts_blur_, focus_, shutter_;

@@ -10,12 +10,26 @@
 namespace neritic::render {
 namespace {
 
-// Rows of workgroups that one pipeline shades.
+// Rows of workgroups that one pipeline shades, or a list of tiles (shaders/shade_tiles.comp).
 struct ShadeRows {
   std::uint32_t first = 0, end = 0;
   bool sea = false;
   const gpu::Pipeline* pipeline = nullptr;
+  bool surfaces = true;
+  std::uint32_t list = 0;
 };
+
+// The lists of tiles that rows make. A picture of several layers has none: a CPU's driver must see
+// which layer a workgroup reads.
+std::vector<ShadeRows> lists_of(const std::vector<ShadeRows>& rows) {
+  std::vector<ShadeRows> lists;
+  for (const bool sea : {false, true})
+    if (std::ranges::any_of(rows, [&](const ShadeRows& part) { return part.sea == sea; }))
+      for (const bool surfaces : {false, true})
+        lists.push_back(
+            {.sea = sea, .surfaces = surfaces, .list = (surfaces ? 1u : 0u) + (sea ? 2u : 0u)});
+  return lists;
+}
 
 // Splits the picture where no view sees the wavy surface before the water has hidden it (sea_meets
 // in shaders/shared/sea_surface.glsl, with room for the waves' height).
@@ -75,9 +89,19 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
   // Rows that see no sea are spared its waves: a CPU driver computes them for every pixel.
   std::vector<ShadeRows> rows{{0, groups(gbuffer.height), waves.has_value(), nullptr}};
   if (waves) rows = rows_of_sea(views, lighting, *waves, groups(gbuffer.height));
+  const bool tiled = gbuffer.layers == 1;
+  graph::BufferHandle tiles;
+  if (tiled) {
+    shared::ShadeTilesPush push{groups(gbuffer.width), groups(gbuffer.height), 0, 0};
+    for (const ShadeRows& part : rows)
+      if (part.sea) push.sea_first = part.first, push.sea_end = part.end;
+    NERITIC_TRY(tiles, declare_shade_tiles(graph, prefix, gbuffer, push));
+    rows = lists_of(rows);
+  }
   for (ShadeRows& part : rows) {
-    gpu::Pipeline& pipeline = shade_[{lighting.terms, lighting.lamp_count, inputs.visibility_step,
-                                      inputs.inscatter_samples, part.sea ? 1u : 0u}];
+    gpu::Pipeline& pipeline = shade_[{
+        lighting.terms, lighting.lamp_count, inputs.visibility_step, inputs.inscatter_samples,
+        (part.sea ? 1u : 0u) + (part.surfaces ? 2u : 0u) + (tiled ? 4u : 0u)}];
     part.pipeline = &pipeline;
     if (pipeline) continue;
     gpu::ComputePipelineDesc desc;
@@ -97,12 +121,15 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
                             {shared::kShadeLampMaps, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {shared::kShadeLampShadows, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
                             {shared::kShadeScattered, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
-                            {shared::kShadeWaves, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}};
+                            {shared::kShadeWaves, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+                            {shared::kShadeTiles, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
     desc.constants = {{shared::kSpecTerms, lighting.terms},
                       {shared::kSpecLamps, lighting.lamp_count},
                       {shared::kSpecSeenStep, inputs.visibility_step},
                       {shared::kSpecGlowSamples, inputs.inscatter_samples},
-                      {shared::kSpecSeaSeen, part.sea ? 1u : 0u}};
+                      {shared::kSpecSeaSeen, part.sea ? 1u : 0u},
+                      {shared::kSpecTiled, tiled ? 1u : 0u},
+                      {shared::kSpecSurfaces, part.surfaces ? 1u : 0u}};
     desc.layout.push_constant_bytes = sizeof(shared::ShadePush);
     NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
   }
@@ -117,6 +144,10 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
              {gbuffer.depth, gbuffer.normal, gbuffer.albedo, gbuffer.material, gbuffer.emissive,
               light.seen, light.caustics, light.shafts, light.lamp_maps})
           if (handle) builder.read(handle, graph::Access::kSampledCompute);
+        if (tiles) {
+          builder.read(tiles, graph::Access::kIndirectBuffer);
+          builder.read(tiles, graph::Access::kStorageReadCompute);
+        }
         data.hdr = builder.write(
             builder.create_image(prefix + "hdr",
                                  {kHdrFormat, gbuffer.width, gbuffer.height, gbuffer.layers}),
@@ -127,8 +158,8 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
                                    {kHdrFormat, gbuffer.width, gbuffer.height, gbuffer.layers}),
               graph::Access::kStorageWriteCompute);
       },
-      [this, rows, gbuffer, lighting, light, waves, &views](const Data& data,
-                                                            graph::PassContext& context) {
+      [this, rows, gbuffer, lighting, light, waves, tiles, &views](const Data& data,
+                                                                   graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
         const gpu::UploadSlice view_data =
             commands.upload(std::span<const shared::View>(gpu_views(views)));
@@ -167,16 +198,77 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
                               wave_data.size),
             gpu::bound_storage_image(
                 shared::kShadeScattered,
-                context.image(data.scattered ? data.scattered : data.hdr).view())};
+                context.image(data.scattered ? data.scattered : data.hdr).view()),
+            gpu::bound_buffer(shared::kShadeTiles,
+                              tiles ? context.buffer(tiles).handle() : nothing_.handle())};
         for (const ShadeRows& part : rows) {
           commands.bind_pipeline(*part.pipeline);
           commands.bind(*part.pipeline, resources);
-          commands.push(*part.pipeline, shared::ShadePush{part.first});
-          commands.dispatch(groups(gbuffer.width), part.end - part.first, gbuffer.layers);
+          if (!tiles) {
+            commands.push(*part.pipeline, shared::ShadePush{part.first, 0});
+            commands.dispatch(groups(gbuffer.width), part.end - part.first, gbuffer.layers);
+            continue;
+          }
+          const std::uint32_t count = groups(gbuffer.width) * groups(gbuffer.height);
+          commands.push(*part.pipeline,
+                        shared::ShadePush{0, shared::kShadeTileHead * shared::kShadeTileLists +
+                                                 count * part.list});
+          vkCmdDispatchIndirect(
+              context.cmd(), context.buffer(tiles).handle(),
+              VkDeviceSize{sizeof(std::uint32_t)} * shared::kShadeTileHead * part.list);
         }
       });
   if (inputs.scattered) *inputs.scattered = pass.scattered;
   return pass.hdr;
+}
+
+Result<graph::BufferHandle> Renderer::declare_shade_tiles(graph::FrameGraph& graph,
+                                                          const std::string& prefix,
+                                                          const GBuffer& gbuffer,
+                                                          const shared::ShadeTilesPush& push) {
+  if (!shade_tiles_) {
+    gpu::ComputePipelineDesc desc;
+    desc.name = "shade tiles";
+    desc.code = shaders::kShadeTilesComp;
+    desc.layout.bindings = {{shared::kShadeTilesDepth, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                            {shared::kShadeTilesOut, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    desc.layout.push_constant_bytes = sizeof(shared::ShadeTilesPush);
+    NERITIC_TRY(shade_tiles_, gpu::Pipeline::create(device_, desc));
+  }
+  struct Data {
+    graph::BufferHandle tiles;
+  };
+  const std::uint64_t words = std::uint64_t{shared::kShadeTileLists} *
+                              (shared::kShadeTileHead + std::uint64_t{push.wide} * push.high);
+  const Data& cleared = graph.add_pass<Data>(
+      prefix + "shade tiles clear",
+      [&](graph::PassBuilder& builder, Data& data) {
+        data.tiles = builder.write(
+            builder.create_buffer(prefix + "shade tiles", sizeof(std::uint32_t) * words),
+            graph::Access::kTransferWrite);
+      },
+      [](const Data& data, graph::PassContext& context) {
+        constexpr VkDeviceSize kHeads =
+            sizeof(std::uint32_t) * shared::kShadeTileHead * shared::kShadeTileLists;
+        vkCmdFillBuffer(context.cmd(), context.buffer(data.tiles).handle(), 0, kHeads, 0);
+      });
+  const Data& sorted = graph.add_pass<Data>(
+      prefix + "shade tiles",
+      [&](graph::PassBuilder& builder, Data& data) {
+        builder.read(gbuffer.depth, graph::Access::kSampledCompute);
+        data.tiles = builder.write(cleared.tiles, graph::Access::kStorageWriteCompute);
+      },
+      [this, depth = gbuffer.depth, push](const Data& data, graph::PassContext& context) {
+        gpu::Commands& commands = context.commands;
+        commands.bind_pipeline(shade_tiles_);
+        commands.bind(
+            shade_tiles_,
+            {gpu::bound_texel_image(shared::kShadeTilesDepth, context.image(depth).view()),
+             gpu::bound_buffer(shared::kShadeTilesOut, context.buffer(data.tiles).handle())});
+        commands.push(shade_tiles_, push);
+        commands.dispatch(groups(push.wide), groups(push.high));
+      });
+  return sorted.tiles;
 }
 
 // Both filters bind their source at 0 and their result at 1.

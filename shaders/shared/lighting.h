@@ -96,6 +96,7 @@ NERITIC_CONST uint kShadeLampShadows = 19;
 NERITIC_CONST uint kShadeScattered = 24;  // with kLightForwardScatter
 NERITIC_CONST uint kShadeWaves = 25;      // with kLightWaves
 NERITIC_CONST uint kShadeShafts = 26;     // with kLightShafts
+NERITIC_CONST uint kShadeTiles = 27;      // where a list names the tiles
 NERITIC_CONST uint kShadeGroup = 8;
 // Specialisation constants of the shade pass: the terms and the number of lamps. Terms that a scene
 // does not name are not compiled: a CPU driver computes both sides of a branch, and runs the body
@@ -105,10 +106,25 @@ NERITIC_CONST uint kSpecLamps = 1;
 NERITIC_CONST uint kSpecSeenStep = 2;     // pixels a side to one of the visibility image
 NERITIC_CONST uint kSpecGlowSamples = 3;  // of a lamp's beam along a sight
 NERITIC_CONST uint kSpecSeaSeen = 4;  // with kLightWaves: whether these rows can see the surface
-// Push constant of the shade pass: the first row of workgroups.
+NERITIC_CONST uint kSpecTiled = 6;     // workgroups take their tiles from a list
+NERITIC_CONST uint kSpecSurfaces = 7;  // 0: no pixel of these tiles shows a solid
+// Push constant of the shade pass: the first row of workgroups, or where its list of tiles begins.
 struct ShadePush {
   uint first_group;
+  uint first_tile;
 };
+
+// The pass that sorts tiles for it. Each list's head has the numbers of an indirect dispatch.
+struct ShadeTilesPush {
+  uint wide;  // tiles of the picture
+  uint high;
+  uint sea_first;  // rows of tiles that can see the wavy surface
+  uint sea_end;
+};
+NERITIC_CONST uint kShadeTileLists = 4;
+NERITIC_CONST uint kShadeTileHead = 4;
+NERITIC_CONST uint kShadeTilesDepth = 0;
+NERITIC_CONST uint kShadeTilesOut = 1;
 
 // Bindings of the tonemap pass.
 NERITIC_CONST uint kTonemapHdr = 0;

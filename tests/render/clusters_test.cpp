@@ -8,6 +8,7 @@
 #include <array>
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
+#include <set>
 
 #include "engine/render/cluster_culling.hpp"
 #include "engine/scene/shapes.hpp"
@@ -114,6 +115,81 @@ TEST(Clusters, SmallAndBrokenMeshesStayAsTheyAre) {
   std::vector<std::uint32_t> ordered = sheet.indices;
   EXPECT_TRUE(build_clusters(sheet.positions, ordered).empty());
   EXPECT_EQ(ordered, sheet.indices);
+}
+
+// Edges of one triangle only, of a run of indices.
+std::set<std::pair<std::uint32_t, std::uint32_t>> border_of(
+    const std::vector<std::uint32_t>& indices, std::uint32_t first, std::uint32_t count) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (std::uint32_t i = first; i < first + count; i += 3)
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = indices[i + k], b = indices[i + (k + 1) % 3];
+      if (!edges.erase({b, a})) edges.insert({a, b});
+    }
+  return edges;
+}
+
+// The sheet as a primitive, with coarser clusters.
+Mesh coarse_sheet(std::uint32_t n) {
+  Mesh mesh = shuffled_sheet(n, 2);
+  scene::Primitive sheet;
+  sheet.positions = mesh.positions;
+  sheet.normals.assign(mesh.positions.size(), Vec3f(0.0f, 1.0f, 0.0f));
+  sheet.indices = mesh.indices;
+  add_coarse_clusters(sheet, mesh.nodes, mesh.ordered);
+  return mesh;
+}
+
+TEST(CoarseClusters, HaveTheBorderOfWhatTheyStandForAndErrMoreTheFewerTheyAre) {
+  const Mesh mesh = coarse_sheet(60);
+  std::size_t coarse = 0;
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+    const ClusterNode& node = mesh.nodes[i];
+    if (node.coarse_count == 0) continue;
+    ++coarse;
+    EXPECT_LE(node.coarse_count, node.index_count * 3 / 4);
+    EXPECT_EQ(border_of(mesh.ordered, node.coarse_first, node.coarse_count),
+              border_of(mesh.ordered, node.first_index, node.index_count));
+    EXPECT_GT(node.coarse_error_m, 0.0);
+    for (std::uint32_t k = 0; k < node.coarse_count; ++k)
+      EXPECT_LE(
+          glm::distance(Vec3(mesh.positions[mesh.ordered[node.coarse_first + k]]), node.center_m),
+          node.radius_m);
+  }
+  EXPECT_GT(coarse, mesh.nodes.size() / 8);
+}
+
+TEST(CoarseClusters, CoverEachPlaceOnceWhicheverVersionsMeet) {
+  const Mesh mesh = coarse_sheet(120);
+  // All of the sheet is seen; its far side is three times as far off as its near one.
+  const ViewSet set = views_of({look_at({0.0, 30.0, 90.0}, {0.0, 0.0, 0.0})},
+                               tangents_from_fov(radians(110.0), 16.0 / 9.0), 0.05);
+  const ClusterCulling culling(set);
+  const Mat4 origin_from_mesh = glm::translate(Mat4(1.0), -set.origin_m());
+  const auto runs = [&](double mesh_error_px) {
+    std::vector<IndexRange> ranges;
+    culling.append_visible(mesh.nodes, 0, origin_from_mesh, ranges, mesh_error_px);
+    return ranges;
+  };
+  const auto area_m2 = [&](const std::vector<IndexRange>& ranges) {
+    double sum = 0.0;
+    for (const IndexRange& range : ranges)
+      for (std::uint32_t i = range.first_index; i < range.first_index + range.index_count; i += 3) {
+        const Vec3f a = mesh.positions[mesh.ordered[i]], b = mesh.positions[mesh.ordered[i + 1]],
+                    c = mesh.positions[mesh.ordered[i + 2]];
+        sum += 0.5 * double(glm::cross(b - a, c - a).y);
+      }
+    return sum;
+  };
+  EXPECT_NEAR(area_m2(runs(0.0)), 1e4, 1.0);
+  std::uint32_t before = count_of(runs(0.0));
+  EXPECT_EQ(before, mesh.indices.size());
+  for (const double error_px : {0.1, 0.2, 0.4, 0.8, 1.6}) {
+    EXPECT_NEAR(area_m2(runs(error_px)), 1e4, 1.0) << error_px;
+    EXPECT_LE(count_of(runs(error_px)), before) << error_px;
+    before = count_of(runs(error_px));
+  }
+  EXPECT_LT(before, mesh.indices.size() / 2);
 }
 
 // Corners that lie in a view, by the projection that the vertex stage uses.
