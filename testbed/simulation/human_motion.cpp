@@ -182,6 +182,7 @@ scene::NodeMotion::Key drawn_joints(const DrawnJoints& drawn, const LimbState& s
   key.rotations.push_back(Quat(1.0, 0.0, 0.0, 0.0));
   for (const Quat& joint : diver::standing_joints(state.joints, drawn.arms_spread_rad))
     key.rotations.push_back(joint);
+  key.scales.assign(diver::kSegments, Vec3(1.0));
   return key;
 }
 

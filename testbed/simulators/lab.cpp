@@ -20,11 +20,15 @@ DeviceClock clock_of(std::uint64_t seed, std::uint64_t device) {
           kMostDrift_ppm * (2.0 * random_uniform(key, 1) - 1.0)};
 }
 
-Result<std::function<bool(net::Bytes)>> sender_to(const scene::DeviceSource& source,
-                                                  const LabOptions& options) {
-  using ToWire = std::function<bool(net::Bytes)>;
+Address address_of(const scene::DeviceSource& source, const LabOptions& options) {
   Address to = source.address;
   to.ipv4 = options.to_ipv4.value_or(to.ipv4 == 0 ? Address().ipv4 : to.ipv4);
+  return to;
+}
+
+Result<std::function<bool(net::Bytes)>> sender_to(const scene::DeviceSource& source,
+                                                  const Address& to) {
+  using ToWire = std::function<bool(net::Bytes)>;
   if (source.by == "udp") {
     NERITIC_TRY(net::UdpSender sender, net::UdpSender::create(to));
     const auto kept = std::make_shared<net::UdpSender>(std::move(sender));
@@ -47,24 +51,27 @@ Result<std::unique_ptr<SimulatedLab>> SimulatedLab::create(const scene::Scene& s
                                                            const LabOptions& options) {
   std::unique_ptr<SimulatedLab> lab(new SimulatedLab(std::move(seen)));
   lab->simulated_time_ = devices != nullptr;
-  const auto wanted = [&](const scene::DeviceSource& source) {
-    return options.names.empty() ||
-           std::ranges::any_of(options.names, [&](const std::string& name) {
-             return name == source.name || name == source.device ||
-                    (name == "suit" && source.device == "mxtp");
-           });
+  const auto names_it = [](const std::string& name, const scene::DeviceSource& source) {
+    return name == source.name || name == source.device ||
+           (name == "suit" && source.device == "mxtp");
   };
+  std::string unknown;
+  for (const std::string& name : options.names)
+    if (std::ranges::none_of(scene.sources, [&](const auto& one) { return names_it(name, one); }))
+      unknown += (unknown.empty() ? "" : ", ") + name;
   for (const scene::DeviceSource& source : scene.sources)
-    if (wanted(source)) NERITIC_TRY_STATUS(lab->add(source, world, devices, options));
-  if (!lab->worn_.empty()) return lab;
+    if (options.names.empty() || std::ranges::any_of(options.names, [&](const std::string& name) {
+          return names_it(name, source);
+        }))
+      NERITIC_TRY_STATUS(lab->add(source, world, devices, options));
+  if (!lab->worn_.empty() && unknown.empty()) return lab;
   std::string names;
   for (const scene::DeviceSource& source : scene.sources)
     names += fmt::format("{}{}", names.empty() ? "" : ", ", source.name);
-  return refusal(scene.path,
-                 options.names.empty()
-                     ? std::string("no [sources] to simulate")
-                     : fmt::format("no source {}", fmt::join(options.names, ", ")),
-                 names.empty() ? "a scene with [sources], such as assets/scenes/lab.toml" : names);
+  return refusal(
+      scene.path,
+      options.names.empty() ? std::string("no [sources] to simulate") : "no source " + unknown,
+      names.empty() ? "a scene with [sources], such as assets/scenes/lab.toml" : names);
 }
 
 Status SimulatedLab::add(const scene::DeviceSource& source, const PhysicsWorld& world,
@@ -85,14 +92,19 @@ Status SimulatedLab::add(const scene::DeviceSource& source, const PhysicsWorld& 
   if (source.device == "microphone")
     device.rate_hz = source.rate_hz, device.recording = options.sound;
   if (source.device == "strap") device.recording = options.ecg;
+  const Address to = address_of(source, options);
+  std::string way = fmt::format("{} ({}) to {}", source.name, source.device, to_text(to));
+  if (source.by == "tcp" &&
+      (faults.loss > 0.0 || faults.repeat > 0.0 || faults.cut > 0.0 || faults.jitter_s > 0.0))
+    way += ", without loss, repeats, cuts and jitter, which a stream has not";
   if (source.by == "tcp") faults.loss = faults.repeat = faults.cut = 0.0, faults.jitter_s = 0.0;
-  NERITIC_TRY(auto to_wire, sender_to(source, options));
+  NERITIC_TRY(auto to_wire, sender_to(source, to));
   DeviceSource* receiver = nullptr;
   if (devices)
     for (const auto& one : devices->all())
       if (one->name() == source.name) receiver = one.get();
-  worn_.push_back({source.name, static_cast<std::size_t>(wearer - wearers_.begin()), device.clock,
-                   simulated_device(source.device, device), net::RoughLink(faults),
+  worn_.push_back({source.name, std::move(way), static_cast<std::size_t>(wearer - wearers_.begin()),
+                   device.clock, simulated_device(source.device, device), net::RoughLink(faults),
                    std::move(to_wire), receiver});
   return {};
 }
@@ -116,10 +128,17 @@ Status SimulatedLab::poll(SampleInbox& inbox, double scene_time_s) {
   return {};
 }
 
+std::vector<std::string> SimulatedLab::ways() const {
+  std::vector<std::string> out;
+  for (const Worn& worn : worn_) out.push_back(worn.way);
+  return out;
+}
+
 void SimulatedLab::deliver(Worn& worn, TimeNs now_ns) {
   while (!worn.link.empty() && worn.link.next().due_ns <= now_ns) {
     const net::RoughLink::Packet packet = worn.link.take_next();
     const bool sent = worn.to_wire(packet.bytes);
+    if (!sent) ++not_taken_;
     if (worn.receiver && sent) worn.receiver->receive_at(packet.due_ns, kArrives_ms);
   }
 }

@@ -48,6 +48,9 @@ class SimulatedLab final : public SampleSource {
   const PersonActs& acts(std::size_t diver) const { return wearers_[diver].person.acts(); }
   std::uint64_t sent() const;  // packets, those that the links lost included
   std::uint64_t lost() const;
+  std::uint64_t not_taken() const { return not_taken_; }  // by the system: a stream that broke
+  // One line a device: "suit (mxtp) to udp://127.0.0.1:9763", and what its way leaves out.
+  std::vector<std::string> ways() const;
 
   // A clock is known well from then on: ClockMap looks back two minutes.
   static constexpr double kKnownAfter_s = 120.0;
@@ -58,7 +61,7 @@ class SimulatedLab final : public SampleSource {
     SimulatedPerson person;
   };
   struct Worn {
-    std::string name;
+    std::string name, way;
     std::size_t wearer = 0;
     DeviceClock clock;
     std::unique_ptr<SimulatedDevice> device;
@@ -79,6 +82,7 @@ class SimulatedLab final : public SampleSource {
   bool simulated_time_ = false;
   std::optional<double> last_s_;
   TimeNs now_ns_ = 0;
+  std::uint64_t not_taken_ = 0;
 };
 
 }  // namespace neritic::testbed

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "engine/core/clock.hpp"
 
 namespace neritic::net {
@@ -33,6 +36,22 @@ struct Pair {
   UdpReceiver receiver = UdpReceiver::bind({.port = 0}).value();
   UdpSender sender = UdpSender::create({.port = receiver.port()}).value();
 };
+
+TEST(Udp, ADatagramSaysHowLongItWaitedInTheKernel) {
+  Pair pair;
+  const TimeNs sent_ns = now_ns();
+  ASSERT_TRUE(pair.sender.send(packet(10, 1)));
+  std::this_thread::sleep_for(std::chrono::milliseconds(40));
+  ASSERT_TRUE(pair.sender.send(packet(10, 2)));
+  std::vector<TimeNs> waited_ns;
+  EXPECT_EQ(pair.receiver.receive(
+                [&](Bytes, bool) { waited_ns.push_back(pair.receiver.waited_ns()); }, 100),
+            2u);
+  const TimeNs since_ns = now_ns() - sent_ns;
+  EXPECT_GE(waited_ns[0], 40'000'000);
+  EXPECT_LE(waited_ns[0], since_ns + 1'000'000);
+  EXPECT_LE(waited_ns[1], waited_ns[0] - 40'000'000 + 1'000'000);
+}
 
 TEST(Udp, DatagramsArriveInOrderAndNoneIsANumberOfNone) {
   Pair pair;

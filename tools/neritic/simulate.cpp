@@ -37,6 +37,11 @@ Status send_devices(const SimulateFlags& flags, const scene::Scene& scene,
   };
   NERITIC_TRY(const auto lab,
               SimulatedLab::create(scene, physics->world(), nullptr, seen, options));
+  if (!flags.quiet) {
+    for (const std::string& way : lab->ways()) fmt::print("{}\n", way);
+    fmt::print("{}\n", flags.seconds ? fmt::format("for {:g} s", *flags.seconds) : "until Ctrl-C");
+    std::fflush(stdout);
+  }
   const double step_s = physics->world().step_s();
   Loop loop({.clock = Clock::real(0.0, step_s),
              .physics = physics.get(),
@@ -47,8 +52,11 @@ Status send_devices(const SimulateFlags& flags, const scene::Scene& scene,
                       .interrupted = [&] { return interrupt.requested(); }}});
   NERITIC_TRY_STATUS(loop.run());
   if (!flags.quiet)
-    fmt::print("{} packets in {:.1f} s, {} of them lost on purpose\n", lab->sent(), loop.wall_s(),
-               lab->lost());
+    fmt::print("{} packets in {:.1f} s, {} of them lost on purpose{}\n", lab->sent(), loop.wall_s(),
+               lab->lost(),
+               lab->not_taken() > 0
+                   ? fmt::format(", {} not taken: nobody listens", lab->not_taken())
+                   : "");
   return {};
 }
 

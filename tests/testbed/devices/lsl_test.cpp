@@ -4,6 +4,7 @@
 #include <cmath>
 #include <thread>
 
+#include "testbed/devices/lsl_outlet.hpp"
 #include "tests/fakes/lsl/fake_lsl.hpp"
 #include "tests/testbed/devices/lab_scene.hpp"
 
@@ -140,6 +141,19 @@ TEST(LabStreamingLayer, WhatDoesNotFitIsRefusedInOneLine) {
             "source mic: LSL: music: found 44100 samples a second; accepted: 16000");
   EXPECT_EQ(refusal_of("strap = \"strap lsl nobody\"\n"),
             "source strap: LSL: no stream nobody within 3 s");
+  EXPECT_EQ(lsl.wrong_calls(), "");
+}
+
+TEST(LabStreamingLayer, MarkersLeaveWithTheTimeOfTheirArrival) {
+  FakeLsl lsl;
+  {
+    const auto outlet = LslOutlet::create("neritic markers");
+    ASSERT_TRUE(outlet.ok()) << outlet.error().message;
+    (*outlet)->send("trial 3 begins", 250 * kMillisecond_ns);
+    const std::string sent = lsl.markers("neritic markers");
+    EXPECT_NE(sent.find(" trial 3 begins\n"), std::string::npos) << sent;
+    EXPECT_NEAR(lsl.local_clock() - std::stod(sent), 0.25, 0.05);
+  }
   EXPECT_EQ(lsl.wrong_calls(), "");
 }
 
