@@ -9,7 +9,7 @@ namespace {
 constexpr double kAtmosphere_pa = 101325.0;
 constexpr double kOxygenPower = 3.38, kOxygenMean = 9.63, kOxygenSpread = 2.02;
 constexpr double kToxicFrom_bar = 0.5, kOxygenRecovery_min = 2.0 / 0.079;
-constexpr double kMostDose = 1e9;
+constexpr double kMostDose = 1e9, kMostOxygen_pa = 1e8;
 constexpr double kConvulsion_s = 180.0, kBreathHeld_s = 60.0;
 constexpr double kLostCo2_mmhg = 80.0, kLostNarcosis_m = 120.0, kOverMost_s = 60.0;
 constexpr double kLostCore_c = 30.0;
@@ -24,7 +24,7 @@ void count_over(bool over, double dt_s, double& dose) {
 
 void step_oxygen(const ConditionSettings& settings, const HypoxiaInputs& breath, double dt_s,
                  ConditionState& state) {
-  const double po2_pa = std::max(0.0, breath.inspired_share * breath.ambient_pa);
+  const double po2_pa = std::clamp(breath.inspired_share * breath.ambient_pa, 0.0, kMostOxygen_pa);
   const bool breathes = breath.ventilation_l_min > 0.0;
   const double minutes = dt_s / 60.0;
   if (breathes && po2_pa > 1e5 * kToxicFrom_bar)

@@ -18,6 +18,7 @@ constexpr double kRestingOutput_l_min = 4.0, kOutputALitre = 5.5;
 constexpr double kLongestPart_s = 0.1, kMostParts = 200;
 constexpr double kRecovery_s = 20.0;
 constexpr double kLeastLungs_l = 0.5;
+constexpr double kMostDry_mmhg = 1e6;  // no depth has more
 
 struct TimeAt {
   double mmhg, seconds;
@@ -26,7 +27,7 @@ constexpr TimeAt kTimes[] = {{8.0, 5.0},    {15.0, 7.0},   {20.0, 12.0},   {25.0
                              {30.4, 180.0}, {32.8, 450.0}, {37.8, 1500.0}, {45.0, 7200.0}};
 
 double dry_mmhg(double ambient_pa) {
-  return std::max(0.0, ambient_pa / kMercury_pa - kLungVapour_mmhg);
+  return std::clamp(ambient_pa / kMercury_pa - kLungVapour_mmhg, 0.0, kMostDry_mmhg);
 }
 
 double heart_output(double oxygen_l_min) {

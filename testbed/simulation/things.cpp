@@ -17,10 +17,6 @@ constexpr double kLeastMoving_kg = 1e-3;
 // trunk that leans a little.
 constexpr double kReachShare = 0.62;
 
-double share_of(double value, double most) {
-  return most > 0.0 ? value / most : 0.0;
-}
-
 }  // namespace
 
 Result<Things> Things::create(const scene::Scene& scene, const Movers& movers) {
@@ -186,7 +182,7 @@ Vec3 fallen(const PhysicsThing& thing, const Vec3& velocity_m_s, const Vec3& cur
   const double speed = glm::length(pushed);
   const double slowed =
       k * speed > 0.0 ? (std::sqrt(1.0 + 4.0 * k * speed) - 1.0) / (2.0 * k) : speed;
-  return current_m_s + pushed * share_of(slowed, speed);
+  return speed > 0.0 ? current_m_s + pushed * (slowed / speed) : current_m_s;
 }
 
 bool Things::pull(std::size_t index, std::span<const PhysicsHuman> humans, const CarryingBody& body,

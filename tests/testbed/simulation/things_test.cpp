@@ -87,7 +87,7 @@ TEST(SceneThing, AGrabKeepsTheMomentumOfBoth) {
   const double step_s = dive.world->step_s();
   std::uint64_t step = 0;
   double before = 0.0, after = 0.0;
-  const double rov_kg = 1.0 / rov::matrix_row(dive.world->vehicles()[0].vehicle.inverse_mass);
+  const double rov_kg = 13.5 + 6.36;  // with added mass, along (rov/bluerov2.cpp)
   for (; step < 480 && state.things()[0].holder == 0; ++step) {
     before = rov_kg * state.vehicles()[0].body.velocity[0];
     state = dive.world->step(state, inputs, {step, step_s});
