@@ -103,7 +103,8 @@ TEST(RenderCommand, RunsHaveSeedsAndFoldersOfTheirOwnAndEndInATable) {
   if (test::may_skip_without_device()) GTEST_SKIP() << "no Vulkan device";
   const test::ScratchFolder folder;
   std::ofstream(folder / "scene.toml")
-      << "[physics]\n[[vehicles]]\nname = \"rov\"\nposition_m = [0, -5, 0]\ndynamics = \"" +
+      << "[physics]\n[[vehicles]]\nname = \"rov\"\nshape = \"box\"\nsize_m = [0.4, 0.3, "
+         "0.5]\nposition_m = [0, -5, 0]\ndynamics = \"" +
              (test::source_dir() / "assets/vehicles/bluerov2_heavy_dynamics.toml").string() +
              "\"\n[vehicles.mission]\nwaypoints = [{ position_m = [0.5, -5, 0] }]\n"
              "[[cameras]]\nname = \"eye\"\nwidth = 16\nheight = 16\n";
