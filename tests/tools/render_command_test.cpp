@@ -86,6 +86,11 @@ TEST(RenderCommand, BadInputEndsInStatusTwoAndOneLineThatNamesIt) {
        "--seed: found -4; accepted: a whole number"},
       {"render " + scene("mission.toml") + out + " --runs 2 --log log.csv",
        "--runs: found a flag of one run"},
+      {"render " + scene("pool.toml") + out + " --chart-cell 1",
+       "--chart-cell: found no profiling"},
+      {"render " + scene("../models/shark.glb") + out + " --quality draft",
+       "--quality: found no sonar"},
+      {"render " + scene("mission.toml") + out + " --log-rate 5", "--log-rate: found no --log"},
       {"rendre " + scene("pool.toml"), "rendre"},
       {"render", "--out is required"},
       {"render" + out, "SCENE: found none"}};
