@@ -401,7 +401,7 @@ Status check_flags_of_displays(const DiveFlags& flags) {
   if (flags.refresh_hz > 0.0 || !flags.bindings.empty())
     return refusal(flags.refresh_hz > 0.0 ? "--refresh" : "--bindings", "--headless beside it",
                    "a dive in a headset");
-  if (flags.hud.empty() && (!flags.diver.empty() || flags.units != "metric"))
+  if (flags.hud.empty() && !flags.panels && (!flags.diver.empty() || flags.units != "metric"))
     return refusal(flags.diver.empty() ? "--units" : "--diver", "--headless without --hud",
                    "with --hud, or a window or headset");
   return {};
