@@ -52,7 +52,13 @@ TEST_F(DivePhysics, FlagsThatDoNotFitEndInOneLine) {
       {"--headless --seconds 1e7", "dive.toml", "--seconds: found 10000000; accepted: up to 1e+06"},
       {"--headless --play a.mcap --restore a.state", "dive.toml",
        "--play: found --restore beside it; accepted: a run from time 0"},
-      {"--headless --log-rate -1", "dive.toml", "--log-rate: found -1; accepted: 0 to 10000"}};
+      {"--headless --log-rate -1", "dive.toml", "--log-rate: found -1; accepted: 0 to 10000"},
+      // Flags that would be looked at by nobody.
+      {"--headless --log-rate 7", "dive.toml", "--log-rate: found no --log beside it"},
+      {"--headless --diver ada", "dive.toml", "--diver: found --headless without --hud"},
+      {"--headless --units imperial", "dive.toml", "--units: found --headless without --hud"},
+      {"--headless --refresh 90", "dive.toml", "--refresh: found --headless beside it"},
+      {"--headless --bindings own.toml", "dive.toml", "--bindings: found --headless beside it"}};
   for (const auto& wrong : cases) {
     const Outcome outcome = dive(wrong.arguments, wrong.scene);
     EXPECT_EQ(outcome.status, 2) << wrong.message;

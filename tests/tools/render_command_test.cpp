@@ -78,6 +78,19 @@ TEST(RenderCommand, BadInputEndsInStatusTwoAndOneLineThatNamesIt) {
        "--frames: found 'abc'; accepted: 1 to 1000000"},
       {"render " + scene("pool.toml") + out + " --chart-cell 2000",
        "--chart-cell: found '2000'; accepted: 0.001 to 1000"},
+      // Not the seeds 2^64 - 4 and 2^64 - 1.
+      {"render " + scene("pool.toml") + out + " --seed -4",
+       "--seed: found -4; accepted: a whole number"},
+      {"render " + scene("pool.toml") + out + " --seed 99999999999999999999", "--seed: found 9"},
+      {"dive " + scene("mission.toml") + " --headless --seed -4",
+       "--seed: found -4; accepted: a whole number"},
+      {"render " + scene("mission.toml") + out + " --runs 2 --log log.csv",
+       "--runs: found a flag of one run"},
+      {"render " + scene("pool.toml") + out + " --chart-cell 1",
+       "--chart-cell: found no profiling"},
+      {"render " + scene("../models/shark.glb") + out + " --quality draft",
+       "--quality: found no sonar"},
+      {"render " + scene("mission.toml") + out + " --log-rate 5", "--log-rate: found no --log"},
       {"rendre " + scene("pool.toml"), "rendre"},
       {"render", "--out is required"},
       {"render" + out, "SCENE: found none"}};
@@ -89,6 +102,29 @@ TEST(RenderCommand, BadInputEndsInStatusTwoAndOneLineThatNamesIt) {
     EXPECT_NE(outcome.said.find(c.names), std::string::npos) << c.arguments << "\n" << outcome.said;
     EXPECT_FALSE(fs::exists(folder / "out")) << c.arguments;
   }
+}
+
+TEST(RenderCommand, RunsHaveSeedsAndFoldersOfTheirOwnAndEndInATable) {
+  if (test::may_skip_without_device()) GTEST_SKIP() << "no Vulkan device";
+  const test::ScratchFolder folder;
+  std::ofstream(folder / "scene.toml")
+      << "[physics]\n[[vehicles]]\nname = \"rov\"\nshape = \"box\"\nsize_m = [0.4, 0.3, "
+         "0.5]\nposition_m = [0, -5, 0]\ndynamics = \"" +
+             (test::source_dir() / "assets/vehicles/bluerov2_heavy_dynamics.toml").string() +
+             "\"\n[vehicles.mission]\nwaypoints = [{ position_m = [0.5, -5, 0] }]\n"
+             "[[cameras]]\nname = \"eye\"\nwidth = 16\nheight = 16\n";
+  const Outcome outcome =
+      neritic("render " + (folder / "scene.toml").string() +
+                  " --only trajectory --time 1 --seed 7" + " --runs 2 --out " +
+                  (folder / "out").string() + " 2>&1 1>" + (folder / "table").string() + " #",
+              "");
+  EXPECT_EQ(outcome.status, 0) << outcome.said;
+  for (const char* run : {"run_0000", "run_0001"})
+    EXPECT_TRUE(fs::exists(folder / "out" / run / "trajectory.csv")) << run;
+  const std::string table = read_text(folder / "table").value();
+  EXPECT_NE(table.find("         7  rov"), std::string::npos) << table;
+  EXPECT_NE(table.find("         8  rov"), std::string::npos) << table;
+  EXPECT_NE(table.find("of 2 missions done"), std::string::npos) << table;
 }
 
 TEST(RenderCommand, WhatCannotBePrintedIsAFailure) {

@@ -20,6 +20,7 @@ COLUMNS, GAP_PX, NAME_PX = 5, 4, 22
 FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
 EDGE = 0.85
 NEAREST = 2
+NO_PHOTOGRAPH = ("_mask", "_reference")  # labels, and pictures that a program has enhanced
 # Oklab (Ottosson 2020): linear sRGB to cones, their cube roots to lightness and two opponents.
 TO_CONES = np.array([[0.4122214708, 0.5363325363, 0.0514459929], [0.2119034982, 0.6806995451, 0.1073969566],
                      [0.0883024619, 0.2817188376, 0.6299787005]])
@@ -79,7 +80,7 @@ class Numbers:
 def photographs(folder):
     found = []
     for file in sorted(folder.rglob("*")):
-        if file.is_dir() or "mask" in file.stem:
+        if file.is_dir() or file.stem.endswith(NO_PHOTOGRAPH):
             continue
         try:
             picture = Image.open(file).convert("RGB")

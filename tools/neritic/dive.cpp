@@ -395,6 +395,18 @@ Status check_serve_flags(const DiveFlags& flags, const scene::Scene& scene, bool
   return {};
 }
 
+// Flags that a run without a window or a headset would not look at.
+Status check_flags_of_displays(const DiveFlags& flags) {
+  if (!flags.headless) return {};
+  if (flags.refresh_hz > 0.0 || !flags.bindings.empty())
+    return refusal(flags.refresh_hz > 0.0 ? "--refresh" : "--bindings", "--headless beside it",
+                   "a dive in a headset");
+  if (flags.hud.empty() && !flags.panels && (!flags.diver.empty() || flags.units != "metric"))
+    return refusal(flags.diver.empty() ? "--units" : "--diver", "--headless without --hud",
+                   "with --hud, or a window or headset");
+  return {};
+}
+
 // With every flag but the form of the recording as it is.
 Status run_whole_dive(const DiveFlags& asked) {
   DiveFlags flags = asked;
@@ -406,6 +418,7 @@ Status run_whole_dive(const DiveFlags& asked) {
     return refusal("--display", "--headless beside it", "one of the two");
   if (flags.panels && !flags.headless)
     return refusal("--panels", "a run in a window", "with --headless (a window has them; F2)");
+  NERITIC_TRY_STATUS(check_flags_of_displays(flags));
   NERITIC_TRY_STATUS(check_replay_flags(flags));
   NERITIC_TRY_STATUS(check_step_files(
       flags.files, {{"--screenshot", flags.screenshot}, {"--timeline", flags.timeline}}));

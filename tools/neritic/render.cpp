@@ -126,6 +126,11 @@ Packing packing_of(const std::string& compress) {
 }
 
 Result<ChosenRender> choose(const RenderFlags& flags, const scene::Scene& scene) {
+  if (!flags.quality.empty() && scene.sonars.empty())
+    return refusal("--quality", "no sonar", "a scene with one, whose samples it chooses");
+  if (flags.chart_cell_m > 0.0 &&
+      std::ranges::count(scene.sonars, scene::SonarKind::kProfiling, &scene::Sonar::kind) == 0)
+    return refusal("--chart-cell", "no profiling sonar", "a scene with one, which sounds a chart");
   NERITIC_TRY(NamedSensors named, named_sensors(flags.sensors, scene));
   LoopSensors sensors{.cameras = std::move(named.cameras),
                       .sonars = std::move(named.sonars),

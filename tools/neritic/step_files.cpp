@@ -58,6 +58,8 @@ Status check_step_files(const StepFileFlags& flags, const std::vector<OutputFile
   if (!(rate_hz >= 0.0 && rate_hz <= kMostRows_hz))
     return refusal("--log-rate", fmt::format("{}", rate_hz),
                    fmt::format("0 to {:g}", kMostRows_hz));
+  if (flags.log_rate_hz && flags.log.empty() && flags.plot.empty())
+    return refusal("--log-rate", "no --log beside it", "with --log or --plot");
   std::vector<OutputFile> files{{"--log", flags.log},
                                 {"--plot", flags.plot},
                                 {"--record", flags.record},
