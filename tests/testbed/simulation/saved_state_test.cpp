@@ -14,7 +14,7 @@ namespace neritic::testbed {
 namespace {
 
 // A mission, a wall to touch, sensors, a diver who swims by a plan; current.
-std::string scene_text(const std::string& rov_keys = "") {
+std::string saved_scene(const std::string& rov_keys = "") {
   return std::string(R"(seed = 5
 [physics]
 [current]
@@ -48,8 +48,8 @@ void push_some(const TestDive& dive, std::uint64_t step) {
 // then takes 12 steps.
 TEST(SavedState, GoesOnWithTheSameHashesFromAThousandRandomPlaces) {
   constexpr std::uint64_t kSteps = 2400, kPlaces = 1000, kOn = 12;
-  TestDive run = dive_of(scene_text());
-  const TestDive other = dive_of(scene_text());
+  TestDive run = dive_of(saved_scene());
+  const TestDive other = dive_of(saved_scene());
   std::vector<std::uint64_t> places;
   for (std::uint64_t i = 0; places.size() < kPlaces; ++i) {
     const std::uint64_t place = random_bits({3, 1, 4}, i) % kSteps;
@@ -88,7 +88,7 @@ TEST(SavedState, GoesOnInAnotherProcessFromTwentyRandomPlaces) {
   std::optional<test::ScratchFolder> scratch;
   if (std::getenv(kFolder) == nullptr) {
     scratch.emplace();
-    TestDive run = dive_of(scene_text());
+    TestDive run = dive_of(saved_scene());
     for (std::uint64_t step = 0; step < kSteps + kOn; ++step) {
       for (std::uint64_t i = 0; i < kPlaces; ++i) {
         if (place(i) != step) continue;
@@ -108,7 +108,7 @@ TEST(SavedState, GoesOnInAnotherProcessFromTwentyRandomPlaces) {
   }
   const auto go_on = [&] {
     const std::filesystem::path folder = std::getenv(kFolder);
-    const TestDive dive = dive_of(scene_text());
+    const TestDive dive = dive_of(saved_scene());
     std::string hashes;
     for (std::uint64_t i = 0; i < kPlaces; ++i) {
       restore_state(
@@ -128,7 +128,7 @@ TEST(SavedState, GoesOnInAnotherProcessFromTwentyRandomPlaces) {
 
 // A keyboard flies while the state is saved. Where the run goes on, another device comes first.
 TEST(SavedState, EachSourceHasItsNumberAgainWhicheverDeviceComesFirst) {
-  TestDive run = dive_of(scene_text());
+  TestDive run = dive_of(saved_scene());
   const SourceId keyboard = run.simulation->inbox().open("keyboard").value();
   const StreamId events = run.world->streams().find("adrift/event").value();
   constexpr auto kWrench = static_cast<std::size_t>(VehicleGroup::kWrench);
@@ -138,7 +138,7 @@ TEST(SavedState, EachSourceHasItsNumberAgainWhicheverDeviceComesFirst) {
   const StateFormat format = run.world->state_format();
   const auto bytes = encode_state(format, saved_state(*run.simulation, run.world->state_format()));
 
-  const TestDive later = dive_of(scene_text());
+  const TestDive later = dive_of(saved_scene());
   restore_state(*later.simulation, parse_state(format, bytes, "dive.state").value());
   EXPECT_NE(later.simulation->inbox().open("joystick").value(), keyboard);
   EXPECT_EQ(later.simulation->inbox().open("keyboard").value(), keyboard);
@@ -146,7 +146,7 @@ TEST(SavedState, EachSourceHasItsNumberAgainWhicheverDeviceComesFirst) {
 }
 
 TEST(SavedState, NamesThatAreNotThoseOfTheSceneOrComeTwiceAreRefusedInOneLine) {
-  TestDive dive = dive_of(scene_text());
+  TestDive dive = dive_of(saved_scene());
   const StateFormat format = dive.world->state_format();
   const auto refused = [&](std::vector<std::string> sources) {
     SavedState saved = saved_state(*dive.simulation, dive.world->state_format());
@@ -174,7 +174,7 @@ std::string refusal(const StateFormat& format, std::span<const std::byte> bytes)
 }
 
 TEST(SavedState, OfAnotherSceneOrVersionOrDamagedIsRefusedInOneLine) {
-  TestDive dive = dive_of(scene_text());
+  TestDive dive = dive_of(saved_scene());
   dive.run(0.1);
   const StateFormat format = dive.world->state_format();
   const auto bytes =
@@ -183,7 +183,7 @@ TEST(SavedState, OfAnotherSceneOrVersionOrDamagedIsRefusedInOneLine) {
   const auto has = [](const std::string& message, const char* part) {
     EXPECT_NE(message.find(part), std::string::npos) << message;
   };
-  has(refusal(dive_of(scene_text("failed_thrusters = [2]\n")).world->state_format(), bytes),
+  has(refusal(dive_of(saved_scene("failed_thrusters = [2]\n")).world->state_format(), bytes),
       "a state of another scene, whose hash is ");
   StateFormat fewer = format;
   fewer.state = PhysicsState(1, 1, 1, 1);
@@ -209,7 +209,7 @@ TEST(SavedState, ACameraMoreIsTheSameSceneAndAnyOtherWaypointOrWallIsNot) {
   const auto hash = [](const std::string& text) {
     return dive_of(text).world->state_format().scene_hash;
   };
-  const std::string text = scene_text();
+  const std::string text = saved_scene();
   const auto changed = [&](const char* from, const char* to) {
     std::string other = text;
     other.replace(other.find(from), std::strlen(from), to);
