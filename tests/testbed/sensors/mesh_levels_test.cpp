@@ -44,9 +44,9 @@ class MeshLevelPictures : public test::GpuTest {
 
   static double difference(const ImageU8& a, const ImageU8& b) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < a.pixels.size(); ++i)
-      sum += std::abs(double(a.pixels[i]) - double(b.pixels[i]));
-    return sum / static_cast<double>(a.pixels.size());
+    for (std::size_t i = 0; i < a.data.size(); ++i)
+      sum += std::abs(double(a.data[i]) - double(b.data[i]));
+    return sum / static_cast<double>(a.data.size());
   }
 
   std::unique_ptr<Session> session_;
@@ -59,8 +59,8 @@ TEST_F(MeshLevelPictures, HalfAPixelOfErrorIsHardlySeenAndArraysHaveNone) {
   RecordProperty("levels_of_255", fmt::format("{:.3f}", half_px));
   EXPECT_GT(half_px, 0.0);  // some mesh is coarser
   EXPECT_LT(half_px, 0.5);
-  EXPECT_EQ(show(kHalfAPixel, 0.0, Capture{.motion = false}).pixels,
-            show(kWhole, 0.0, Capture{.motion = false}).pixels);
+  EXPECT_EQ(show(kHalfAPixel, 0.0, Capture{.motion = false}).data,
+            show(kWhole, 0.0, Capture{.motion = false}).data);
 }
 
 TEST_F(MeshLevelPictures, NothingPopsWhileTheCameraDrawsNear) {

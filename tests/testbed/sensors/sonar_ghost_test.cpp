@@ -8,7 +8,7 @@ namespace {
 
 using SonarGhost = test::GpuTest;
 
-constexpr double kRange_m = 5.0, kDepth_m = 2.0, kRadius_m = 0.05;
+constexpr double kRange_m = 5.0, kDepth_m = 2.0, kBallRadius_m = 0.05;
 
 // A small sphere dead ahead of a sonar, both at one depth under a surface that mirrors.
 scene::Scene sphere_below_surface() {
@@ -21,7 +21,7 @@ scene::Scene sphere_below_surface() {
   sonar.terms.level = plain_level();
   scene::Scene scene;
   scene.objects.push_back(
-      object_of(scene, scene::make_sphere(kRadius_m, 128), {0.0, -kDepth_m, -kRange_m}));
+      object_of(scene, scene::make_sphere(kBallRadius_m, 128), {0.0, -kDepth_m, -kRange_m}));
   scene.sonars = {sonar};
   scene.sonars[0].mount.pose.position_m = {0.0, -kDepth_m, 0.0};
   return scene;
