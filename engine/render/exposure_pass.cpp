@@ -6,6 +6,8 @@
 
 namespace neritic::render {
 
+static_assert(gpu::is_needed(kMotionFormat, gpu::kTexture));
+
 template <class Params>
 Result<graph::ImageHandle> Renderer::declare_exposure(
     graph::FrameGraph& graph, const std::string& prefix, const PictureFilter& filter,
