@@ -45,10 +45,15 @@ class CameraTermsTest : public test::GpuTest {
 
 TEST_F(CameraTermsTest, WhatACameraDoesNotNameIsNotDeclared) {
   NERITIC_ASSERT_OK(const ViewImages plain, picture(scene_with({})));
-  EXPECT_EQ(plan_.find("camera hdr"), std::string::npos);
+  for (const char* pass : {"camera hdr", "focus", "shutter"})
+    EXPECT_EQ(plan_.find(pass), std::string::npos) << pass;
   EXPECT_TRUE(plain.linear.empty() && plain.raw.empty());
   NERITIC_ASSERT_OK(const ViewImages shaded, picture(scene_with({.vignette = 1.0})));
   EXPECT_NE(plan_.find("camera hdr"), std::string::npos);
+  NERITIC_ASSERT_OK(const ViewImages exposed,
+                    picture(scene_with({.focus = scene::Focus{}, .shutter = scene::Shutter{}})));
+  for (const char* pass : {"focus", "shutter"}) EXPECT_NE(plan_.find(pass), std::string::npos);
+  EXPECT_EQ(plan_.find("camera hdr"), std::string::npos);
 }
 
 TEST_F(CameraTermsTest, NoiseHasTheMeanAndVarianceOfPhotonsAndReading) {
