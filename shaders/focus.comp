@@ -20,29 +20,40 @@ float distance_at(ivec3 at) {
   return depth > 0.0 ? focus.near_m / depth : 1e9;
 }
 
+// The spot of a place as far as it can spread here: from behind a surface nothing spreads farther than that
+// surface's own spot.
+float spot_here(ivec3 other, float own_m, float own_px) {
+  float other_m = distance_at(other);
+  float spot_px = max(spot_radius_px(focus, other_m), 0.5);
+  return other_m > own_m * 1.02 ? min(spot_px, own_px) : spot_px;
+}
+
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
   ivec2 size = imageSize(out_image).xy;
   if (at.x >= size.x || at.y >= size.y) return;
   float own_m = distance_at(at);
   float own_px = max(spot_radius_px(focus, own_m), 0.5);
+  // Each pixel turns its samples otherwise (Jimenez 2014, interleaved gradient noise).
+  float turn = 6.2831853 * fract(52.9829189 * fract(dot(vec2(at.xy), vec2(0.06711056, 0.00583715))));
+  // How far off anything spreads to here from.
+  float far_px = own_px;
+  for (uint i = 0u; i < 16u; ++i) {
+    float r = focus.widest_px * sqrt((float(i) + 0.5) / 16.0), angle = turn + 2.39996323 * float(i);
+    ivec2 offset = ivec2(round(r * vec2(cos(angle), sin(angle))));
+    float spot_px = spot_here(ivec3(clamp(at.xy + offset, ivec2(0), size - 1), at.z), own_m, own_px);
+    if (spot_px > 0.6 * r) far_px = max(far_px, spot_px);
+  }
   // A pixel is 1 / pi of the disk of radius 1.
   vec4 sum = vec4(texelFetch(hdr_image, at, 0).rgb, 1.0) * (0.3183 / (own_px * own_px));
-  // A spiral of even density out to the widest spot, turned pixel by pixel.
-  uvec2 b = uvec2(at.xy) & 3u;
-  float turn = float((b.x * 4u + ((b.y + b.x * 2u) & 3u))) * (6.2831853 / 16.0);
-  // Samples are as dense as their number over the disk; the middle stands for one pixel.
-  float each_px2 = focus.widest_px * focus.widest_px / float(focus.samples);
+  // A spiral of even density out to there.
+  float each_px2 = far_px * far_px / float(focus.samples);
   for (uint i = 0u; i < focus.samples; ++i) {
-    float r = focus.widest_px * sqrt((float(i) + 0.5) / float(focus.samples));
-    float angle = turn + 2.39996323 * float(i);
+    float r = far_px * sqrt((float(i) + 0.5) / float(focus.samples)), angle = turn + 2.39996323 * float(i);
     ivec2 offset = ivec2(round(r * vec2(cos(angle), sin(angle))));
     if (offset == ivec2(0)) continue;
     ivec3 other = ivec3(clamp(at.xy + offset, ivec2(0), size - 1), at.z);
-    float other_m = distance_at(other);
-    float spot_px = max(spot_radius_px(focus, other_m), 0.5);
-    // From behind a surface nothing spreads farther than that surface's own spot.
-    if (other_m > own_m * 1.02) spot_px = min(spot_px, max(own_px, 0.5));
+    float spot_px = spot_here(other, own_m, own_px);
     float reaches = clamp(spot_px - r + 0.5, 0.0, 1.0);
     sum += vec4(texelFetch(hdr_image, other, 0).rgb, 1.0) * (reaches * each_px2 / (spot_px * spot_px));
   }
