@@ -119,6 +119,11 @@ Result<std::unique_ptr<World>> World::open(const std::filesystem::path& path,
   parts.first_image = parts.world().streams().size();
   parts.receiver =
       std::make_unique<Receiver>(parts.world(), parts.scene.seed, parts.streams.size());
+  // Devices send by the clock on the wall.
+  if (options.real_time) {
+    NERITIC_TRY(parts.devices, Devices::open(parts.scene, parts.world(), parts.physics->inbox(),
+                                             DeviceSource::Pace::kThread));
+  }
   parts.begin_loop();
   return world;
 }
@@ -142,6 +147,9 @@ std::unique_ptr<World> World::attach(LivePhysics& physics, const scene::Scene& s
 
 const std::string& World::title() const {
   return parts_->scene.title;
+}
+bool World::leaves_devices() const {
+  return !parts_->options.real_time && !parts_->scene.sources.empty();
 }
 const std::string& World::path() const {
   return parts_->path;

@@ -27,10 +27,11 @@ namespace neritic::testbed {
 
 struct WorldOptions {
   std::optional<std::uint64_t> seed;  // instead of the scene's
-  bool real_time = false;             // ticks wait for the host's clock; else they run at once
-  unsigned threads = 1;               // of a step
-  std::string device;                 // of images: part of its name; empty: the best
-  bool validation = false;            // of Vulkan, for images
+  // Ticks wait for the host's clock, and the scene's devices are heard; else they run at once.
+  bool real_time = false;
+  unsigned threads = 1;     // of a step
+  std::string device;       // of images: part of its name; empty: the best
+  bool validation = false;  // of Vulkan, for images
 };
 
 struct StreamField {
@@ -122,6 +123,8 @@ class World {
   ~World();
 
   const std::string& title() const;
+  // In lock-step the scene's devices, which send by the clock on the wall, are not listened to.
+  bool leaves_devices() const;
   const std::string& path() const;
   std::uint64_t seed() const;
   double step_s() const;

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "engine/gpu/device.hpp"
+#include "testbed/devices/devices.hpp"
 #include "testbed/loop/loop.hpp"
 #include "testbed/record/recording_switch.hpp"
 #include "testbed/world/world.hpp"
@@ -73,6 +74,7 @@ struct World::Parts {
   std::vector<StreamInfo> streams;
   std::size_t first_image = 0;  // into streams
   std::unique_ptr<Receiver> receiver;
+  std::unique_ptr<Devices> devices;  // of the scene, in real time; threads of their own
   // Images. In the order of creation: each uses those before it.
   std::unique_ptr<gpu::Device> device;
   std::unique_ptr<Session> session;

@@ -6,6 +6,7 @@ import importlib.util
 import inspect
 import io
 import os
+import socket
 import tempfile
 import threading
 import time
@@ -53,6 +54,21 @@ class Examples(unittest.TestCase):
         self.assertGreaterEqual(said["told"], 4)
         self.assertLess(said["worst_m"], 1.5)
         self.assertGreaterEqual(said["answered"], 2)
+
+    def test_devices_of_the_scene_are_heard_in_real_time(self):
+        assets, port = ROOT / "assets", 46000 + os.getpid() % 900
+        with tempfile.TemporaryDirectory() as folder, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+            scene = Path(folder) / "lab.toml"
+            scene.write_text(f'[physics]\n[[objects]]\nname = "diver"\nmodel = "{assets}/models/diver.glb"\n'
+                             f'human = "{assets}/divers/recreational.toml"\nposition_m = [0, -12, 0]\n'
+                             f'[sources]\njacket = "jacket udp {port}"\n')
+            with neritic.open(scene, real_time=True) as world:
+                for _ in range(100):
+                    sender.sendto(b"[false,true,false]", ("127.0.0.1", port))
+                    if list(world.tick(6)["diver/motion"].buttons) == [0, 1, 0]:
+                        break
+                else:
+                    self.fail("nothing was heard")
 
     def test_messages_by_sound_end_as_was_accepted(self):
         """Who hears what and when, and what is lost and why: tests/golden/talk.messages.csv (NERITIC_UPDATE_GOLDEN=1 writes it)."""

@@ -41,6 +41,9 @@ Status run_serve(const ServeFlags& flags) {
                                                           .device = flags.device,
                                                           .validation = flags.validation}));
   const std::uint64_t first_step = world->step();
+  if (world->leaves_devices())
+    log_warn("{}: its devices send by the clock on the wall: they are heard with --realtime alone",
+             flags.scene);
   if (!flags.record.empty()) NERITIC_TRY_STATUS(world->record(flags.record));
   HandOff hand_off;
   NERITIC_TRY(const auto server,

@@ -248,6 +248,7 @@ def open(scene: Union[str, os.PathLike[str]], seed: Optional[int] = None, *, thr
     """Opens a scene in this process.
 
     scene: a TOML file in which something moves by physics. seed: instead of the scene's. threads: that
-    share a step. real_time: ticks wait for the clock, else they run at once. device: of images, a part
+    share a step. real_time: ticks wait for the clock and the scene's devices are
+    heard, else they run at once. device: of images, a part
     of its name. validation: of Vulkan, for images."""
     return World(_core.World(os.fspath(scene), seed, real_time, threads, device, validation))
