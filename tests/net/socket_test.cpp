@@ -39,6 +39,8 @@ struct Pair {
 
 TEST(Udp, ADatagramSaysHowLongItWaitedInTheKernel) {
   Pair pair;
+  // The kernel begins to stamp a moment after the first socket that asks for it.
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
   const TimeNs sent_ns = now_ns();
   ASSERT_TRUE(pair.sender.send(packet(10, 1)));
   std::this_thread::sleep_for(std::chrono::milliseconds(40));
