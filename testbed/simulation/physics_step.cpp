@@ -78,7 +78,9 @@ LimbState next_limbs(const LimbState& before, const LimbTrack& track, const Obje
   LimbState next = before;
   const Authority by = acting(object.groups.front());
   const double since_s = static_cast<double>(time.step + 1 - track.taken_step) * time.step_s;
-  if (by == Authority::kLive && track.taken > 0 && since_s <= hold_s) {
+  // As long as the group's own silence counts (next_group).
+  const double silent_s = static_cast<double>(time.step - track.taken_step) * time.step_s;
+  if (by == Authority::kLive && track.taken > 0 && silent_s <= hold_s) {
     next.joints = track.at(since_s);
     next.shown = 1;
   } else if (by != Authority::kNobody) {
