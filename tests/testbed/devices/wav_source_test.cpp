@@ -66,11 +66,18 @@ TEST(MicrophoneFile, ARealBreathIsFoundInEveryFormOfItsFile) {
   NERITIC_REQUIRE_SHARED(shared);
   const auto recordings = shared / "data/recordings/breath_paced";
   const test::ScratchFolder scratch;
-  const auto original = recordings / "ThinklabsO_18bpm_2023021713052.wav";
+  const auto original = recordings / "RRinervasO_18bpm_2023021713052.wav";
   const auto sound = diver::parse_wav(read_file(original).value(), "it", 0).value();
   const std::vector<double> rates_bpm = heard(original, sound.rate_hz);
   ASSERT_GE(rates_bpm.size(), 5u);
-  EXPECT_NEAR(rates_bpm.back(), 18.0, 1.5);
+  // Where the analysis is not sure it says none: 0.
+  std::size_t sure = 0;
+  for (const double rate_bpm : rates_bpm) {
+    if (rate_bpm == 0.0) continue;
+    ++sure;
+    EXPECT_NEAR(rate_bpm, 18.0, 1.5);
+  }
+  EXPECT_GE(sure, 4u);
   struct Form {
     int bits;
     bool floats;
