@@ -28,7 +28,7 @@ class GazeNoise {
  public:
   // A valid sample, of length 1.
   void push(double time_s, const Vec3& direction);
-  // The deviation of one axis, radians; 0 until known. Of samples 5 ms apart or more, so that the
+  // The deviation of one axis, radians; 0 until known. Uses samples 5 ms apart or more, so that the
   // filter of a fast tracker does not hide it.
   double deviation_rad() const { return deviation_.deviation(); }
   std::size_t count() const { return deviation_.count(); }

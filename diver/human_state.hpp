@@ -42,7 +42,7 @@ struct HumanInputs {
   }
 };
 
-// l: what lives, and what it lives on.
+// l: breath and gas, heart and gaze, tissues, risk.
 struct LifeState {
   LungState lungs;
   TankState tanks;

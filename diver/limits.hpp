@@ -1,4 +1,4 @@
-// Bounds of what a person gives. Any thread.
+// Checks parameters that a person writes against their bounds. Any thread.
 #pragma once
 
 #include <initializer_list>

@@ -1,7 +1,7 @@
-// The numbers that a robot beside a diver may act on: rates of heart and breath, where the
-// diver looks, and the risk proxies of that effort and that gas. As instruments that are worn say
-// (heart_monitor, breath_monitor, gaze_events); where one says nothing, as the effort asks for.
-// World north, east, down. Pure functions over plain bytes; any thread.
+// The numbers that a robot beside a diver may act on: rates of heart and breath, where the diver
+// looks, and the risk proxies of that effort and that gas. A value is that of a worn instrument
+// (heart_monitor, breath_monitor, gaze_events); without one it follows from the effort. World
+// north, east, down. Pure functions over plain bytes; any thread.
 #pragma once
 
 #include "diver/breath_rate.hpp"
@@ -12,7 +12,7 @@
 
 namespace neritic::diver {
 
-// The newest word of each; as they begin, they say nothing.
+// The newest state of each instrument; at first none has a value.
 struct Instruments {
   HeartState heart;
   BreathState breath;
@@ -26,7 +26,7 @@ struct Instruments {
 };
 
 // Takes over what is finite and possible; returns how many of the three were refused: their last
-// good word stays.
+// good value stays.
 int take_instruments(const Instruments& said, Instruments& held);
 
 // Bits of VitalState::measured.

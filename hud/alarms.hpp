@@ -19,7 +19,7 @@ enum class AlarmLevel : std::uint8_t { kOff, kCaution, kDanger };
 inline constexpr double kLeastOn_s = 5.0;
 // Little no-stop time, and where it is enough again; as computers on wrists come set.
 inline constexpr double kLittleNoStop_min = 5.0, kEnoughNoStop_min = 7.0;
-// The parts of an alarm's limit where it ends.
+// Where an alarm ends, against its limit.
 inline constexpr double kCalmAscent = 0.8;       // of the fast and the dangerous rate
 inline constexpr double kCalmOxygen_bar = 0.05;  // below the limit
 inline constexpr double kCalmReserve_pa = 5e5;   // over the reserve

@@ -8,7 +8,7 @@
 namespace neritic::rov {
 
 // The specific force of a vehicle that hardly accelerates is gravity's: levels it (Groves 2013,
-// section 5.6.2). Of the state's own inertial reading.
+// section 5.6.2). Uses the state's own inertial reading.
 Measurement level_measurement(const NavigationModel& model, const NavigationState& state);
 
 // The speed of the DVL along beam i.

@@ -12,7 +12,7 @@
 namespace neritic::rov {
 
 // Places in the error state. The attitude's error is a rotation in world axes (Solà, section 7):
-// R = exp([e]x) R_estimated. Of velocity, position and biases: true less estimated.
+// R = exp([e]x) R_estimated. The errors of velocity, position and biases are true less estimated.
 enum ErrorPlace : std::size_t {
   kAttitudeError = 0,      // rad
   kVelocityError = 3,      // of the inertial unit over ground, m/s

@@ -17,11 +17,11 @@ enum class Integrator {
   // Order 4. The classical method over all of the state, thruster lag included; diverges where the
   // step is too long for the lag or the drag.
   kRk4,
-  // Order 4, the default: thrust as its lag's exact impulses, the rest by RK4 in as many substeps
-  // as
-  // keep the fastest rate times the substep below a bound; where that takes too many, backward
-  // Euler
-  // with implicit Coriolis terms, to which no step can add more energy than the forces gave.
+  // Order 4, the default. Thrust acts as its lag's exact impulses, the rest is RK4 in as many
+  // substeps as keep the fastest rate times the substep below a bound.
+  // If that takes too many substeps, the step is backward Euler with implicit Coriolis terms,
+  // which cannot add more energy than the forces gave.
+  // No step of it diverges, whatever its length.
   kGuarded,
 };
 std::string_view name_of(Integrator integrator);

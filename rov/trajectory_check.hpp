@@ -15,8 +15,8 @@ inline constexpr double kAttitudeBar = 1e-6;  // of a quaternion's components, u
 inline constexpr double kVelocityBar = 1e-5;  // m/s, rad/s
 inline constexpr double kForceBar = 1e-5;     // N
 
-// More a file cannot claim: its samples' own error, and what it promises a step of fourth order
-// above 120 Hz, or one of the first at any rate. In m, m/s, rad/s and of a quaternion. A larger one
+// The largest errors that a file may claim: of its samples, of a step of fourth order above 120 Hz,
+// and of one of first order at any rate; in m, m/s, rad/s and of a quaternion. A larger claim
 // counts as this, and the result's note says so.
 inline constexpr double kMostReferenceError = 1e-5;
 inline constexpr double kMostPromised = 1e-3, kMostPromisedEuler = 10.0;

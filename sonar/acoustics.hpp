@@ -1,6 +1,6 @@
 // Acoustics of sea water and of the sonar equation, in decibels: sound speed, absorption,
-// transmission loss, reflection, ambient noise. Pure functions in
-// double; any thread. Levels are dB re 1 uPa (at 1 m for sources), losses positive dB.
+// transmission loss, reflection, ambient noise. Pure functions in double; any thread. Levels are dB
+// re 1 uPa (at 1 m for sources), losses positive dB.
 //
 // An argument that is NaN gives NaN. Values outside a formula's published range (stated above it)
 // are extrapolated and stay finite wherever validate(water) is ok and the frequency lies in

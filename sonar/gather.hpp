@@ -98,8 +98,8 @@ class SonarGather {
     graph::ImageHandle labels;          // R16G16_UINT class, instance; may be absent
     graph::BufferHandle reflectivity;   // floats by instance label; may be absent
     std::uint32_t reflectivities = 0;
-    // Instead of that table, until the run. Of an instance that is drawn larger than it is: less
-    // than 0, its size the strength a sample.
+    // Instead of that table, until the run. An instance that is drawn larger than it is has a
+    // negative value, whose size is the strength a sample.
     std::span<const float> strengths = {};
     // Ghosts: what the sonar itself sees, of the same sizes; CHECKed to be there.
     graph::ImageHandle direct_depth, direct_labels;

@@ -45,7 +45,7 @@ bool full_turn(const BeamGrid& grid) {
 constexpr std::uint32_t kMostBent = 768;  // kMostWidenedRows of rows as far as rays bend
 
 // An elevation pattern is heard beyond the aperture that its half power names: as far as its second
-// null. What lies straight below a side-scan, or the surface above a flat beam, comes in there.
+// null: the bottom straight below a side-scan, or the surface above a flat beam, is heard there.
 void widen_elevation(const scene::Sonar& sonar, Head& head, const HeadPatterns& patterns) {
   if (!patterns.upright()) return;
   BeamGrid& g = head.samples;

@@ -19,8 +19,8 @@ struct Head {
   Pose sonar_from_head;  // a head looks along its -z
   BeamGrid beams;        // of what leaves: [range][beams]
   BeamGrid samples;      // of what is gathered: samples_per_beam columns a beam, and a margin
-  // The part of the gathered elevations that is heard: less than all where rays are bent, whose
-  // ends are looked at from beyond.
+  // The part of the gathered elevations that is heard: less than all if rays are bent, since such a
+  // ray may end outside the elevation at which it leaves.
   double heard_up_rad = 0.0;                       // to either side
   std::uint32_t samples_per_beam = 1, margin = 0;  // columns
   bool folded = false;  // all columns are one beam: an echo sounder's cone

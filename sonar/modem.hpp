@@ -198,8 +198,8 @@ struct ModemChannel {
 };
 
 // Sends a message at now_s. False, and counted: the modem is still sending, has kFlying messages on
-// the way, or the message has no bytes or too many. from and sequence are filled in. What is above
-// the surface neither says nor hears anything.
+// the way, or the message has no bytes or too many. from and sequence are filled in. A modem
+// above the surface neither sends nor receives.
 bool send(const ModemChannel& channel, std::span<ModemState> states, std::size_t from,
           ModemMessage message, double now_s, const Vec3& from_ned_m);
 

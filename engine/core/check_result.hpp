@@ -8,7 +8,7 @@
 
 namespace neritic {
 
-// The larger; no number where either is none (std::max would drop it).
+// The larger; NaN if either is NaN, which std::max would drop.
 inline double larger(double a, double b) {
   return std::isnan(a) || a >= b ? a : b;
 }

@@ -42,7 +42,7 @@ class Past {
   struct Segment {
     std::uint64_t begin, end, run;
     Pending left;
-    // Pending before the resource on bytes that it may not have touched: of parts without a use.
+    // Pending since before the resource, on bytes of parts that no pass used.
     Pending untouched;
   };
   void start_object(const Plan& plan, const Part& part, State& state,

@@ -1,7 +1,7 @@
 // Messages whose layout a `ros2msg` schema says, as columns of a table: nested fields get names
-// with
-// "_" between the parts, short arrays a column an item, sequences and long arrays one column with a
-// list. Any bytes are safe. Plain values; any thread.
+// with "_" between the parts, short arrays a column an item, sequences and long arrays one column
+// with a list. Any bytes are safe.
+// Plain values; any thread.
 #pragma once
 
 #include <optional>

@@ -89,8 +89,8 @@ ViewParticles view_particles(const scene::MotionSource& motion, SnowField& field
     if (all[i].opacity > 0.0 && culling.may_see(at, all[i].radius_m + kSpotRoom_m))
       seen.push_back({glm::dot(at, at), i, all[i].kind == shared::kParticleBubble});
   }
-  // Bubbles first: they have a pipeline of their own. What little is wrong where silt or snow
-  // floats behind one, nobody sees.
+  // Bubbles first: they have a pipeline of their own. The error where silt or snow floats behind
+  // a bubble is too small to be seen.
   std::sort(seen.begin(), seen.end(), [](const Key& a, const Key& b) {
     if (a.bubble != b.bubble) return a.bubble;
     return a.distance2_m2 != b.distance2_m2 ? a.distance2_m2 > b.distance2_m2 : a.index < b.index;

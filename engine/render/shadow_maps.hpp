@@ -21,7 +21,7 @@ struct ShadowMap {
   std::uint32_t layer = 0;  // of the image
 };
 
-// Sees what to_sun (unit) shines on, out of 5 km: squares round what the camera looks at, each
+// Views from 5 km away along to_sun (unit): squares round what the camera looks at, each
 // three times as narrow as the next. They follow the camera in steps of an eighth of their half
 // width and of whole texels, so that edges do not crawl, and a map is drawn anew only at a step.
 std::vector<ViewSet> sun_views(const ViewSet& camera, const scene::SunShadows& shadows,

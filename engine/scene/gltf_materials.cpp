@@ -116,7 +116,7 @@ AlphaMode parse_alpha_mode(Field field) {
 }
 
 // Reflectance (model.hpp) of a dielectric: KHR_materials_ior, times KHR_materials_specular, whose
-// colour counts as its mean. Of an index of 0, "infinite" in the extension, the largest.
+// colour counts as its mean. An index of 0, "infinite" in the extension, gives the largest.
 float parse_reflectance(Field field) {
   const double index = field.extension("KHR_materials_ior")["ior"].number(1.5);
   const Field specular = field.extension("KHR_materials_specular");

@@ -41,7 +41,7 @@ struct Aim {
   Vec3 point_m{0.0};
 };
 
-// Where a vehicle faces. None of both: along its way; where it has none, as it did.
+// Where a vehicle faces. Neither is set: along its path; without a path, as before.
 struct Facing {
   std::optional<double> heading_rad;
   std::optional<Aim> look_at;
@@ -54,7 +54,7 @@ struct MissionWaypoint {
   double hold_s = 0.0;  // stays so long
 };
 
-// The motion that a speed is one of: over ground or through the water, which differ in a current.
+// Against which a speed counts, ground or water: they differ in a current.
 enum class SpeedOver { kGround, kWater };
 
 // Where a vehicle is to go; exactly what kind says.

@@ -1,5 +1,5 @@
-// Two moving bodies that meet: each against its own mass matrix, before what stands still has its
-// say (motion.hpp). Pure functions; any thread.
+// Two moving bodies that meet, each with its own mass matrix; contacts with things that stand still
+// are solved after it (motion.hpp). Pure functions; any thread.
 //
 //   v_a' = v_a + M_a^-1 J_a^T lambda,  v_b' = v_b - M_b^-1 J_b^T lambda,
 //   0 <= lambda_n  _|_  n . (v_a,c' - v_b,c') >= -gap / dt,   |lambda_t| <= mu lambda_n

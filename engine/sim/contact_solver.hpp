@@ -5,11 +5,11 @@
 //   v' = v + M^-1 J^T lambda,   0 <= lambda_n  _|_  n . v'_c >= target,   |lambda_t| <= mu lambda_n
 //
 // solved by projected Gauss-Seidel in the order of the contacts (Catto 2005), friction as a cone.
-// The target is -gap / dt, so that a body comes to touch and no farther (speculative contacts), or,
-// where it hits faster than kBounce_m_s, the bounce -e n . v_c, which for e = 0 is for what it
-// touches: a hit is one impulse, or its friction would depend on where in the step it falls. Depth
-// is undone by a velocity of its own that moves the body in this step only and carries no energy
-// (split impulses).
+// The target is -gap / dt, so that a body comes to touch and no farther (speculative contacts). If
+// a contact hits faster than kBounce_m_s, its target is the bounce -e n . v_c; with e = 0 only for
+// a contact that touches already. So a hit is one impulse; in two, its friction would depend on
+// where in the step the hit falls. Depth is undone by a velocity of its own that moves the body in
+// this step only and carries no energy (split impulses).
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ struct Twist {
 // Rows first; three linear components, then three angular: [kg^-1 ...].
 using InverseMass = std::array<double, 36>;
 
-// More than gravity brings in a step of 240 Hz: what lies does not hop.
+// More than gravity adds in a step of 240 Hz, so that a resting body does not hop.
 inline constexpr double kBounce_m_s = 0.05;
 
 // In body axes about the body's origin.
@@ -63,8 +63,8 @@ ContactSolution solve_contacts(std::span<const BodyContact> contacts,
                                const InverseMass& inverse_mass, const Twist& free, double dt_s,
                                SolverMemory& memory);
 
-// When within dt_s the first contact is hit faster than kBounce_m_s that is not touched yet; dt_s:
-// none.
+// The time within dt_s at which the body first hits, faster than kBounce_m_s, a contact that it
+// does not touch yet; dt_s: none.
 double time_to_hit(std::span<const BodyContact> contacts, const Twist& velocity, double dt_s);
 
 }  // namespace neritic::sim

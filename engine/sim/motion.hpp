@@ -1,7 +1,7 @@
-// A body's motion when things are in its way. The vehicle steps as if the
-// water were empty; then move_body() takes the pose before and the motion after that step, and
-// returns the motion with contacts: the same bits where nothing was touched. Nothing is passed
-// through, whatever the speed and the step. Pure functions; any thread.
+// A body's motion when things are in its way. The vehicle steps without contacts; then move_body()
+// takes the pose before and the motion after that step, and returns the motion with contacts: the
+// same bits if nothing was touched. A body passes through nothing, whatever its speed and the step.
+// Pure functions; any thread.
 //
 //   const rov::State free = rov::step(...);
 //   const BodyMotion after = move_body(world, shape, inverse_mass, before, free_motion, dt_s);

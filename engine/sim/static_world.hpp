@@ -90,7 +90,7 @@ class StaticWorldBuilder {
   ~StaticWorldBuilder();
 
   // A shape to be placed once or more. Errors name what is wrong; name stands in messages. A mesh
-  // without triangles is in nobody's way.
+  // without triangles collides with nothing.
   using ShapeId = std::uint32_t;
   Result<ShapeId> add_mesh(std::span<const Vec3f> vertices_m,
                            std::span<const std::uint32_t> indices, const std::string& name);

@@ -11,7 +11,7 @@ layout(location = kNextInstanceRow2) in vec4 drawn_row2;
 
 void main() {
 #ifdef NERITIC_LARGER
-  // As far off as it is, in the direction of where it is drawn. What is not larger keeps its bits.
+  // As far off as it is, in the direction of where it is drawn. Others keep their bits.
   vec3 at = place_vertex();
   vec4 p = vec4(position, 1.0);
   vec3 drawn = vec3(dot(drawn_row0, p), dot(drawn_row1, p), dot(drawn_row2, p));

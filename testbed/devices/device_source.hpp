@@ -1,7 +1,7 @@
 // One device of a scene while the scene runs: its feed, its adapter and its thread. The thread
-// pushes into the inbox and shares nothing else; what waits for it waits in the kernel's bounded
-// queue. In a run in simulated time there is no thread: the loop polls, and what came by then
-// arrived at that time.
+// pushes into the inbox and shares nothing else; bytes that it has not read yet wait in the
+// kernel's bounded queue. In a run in simulated time there is no thread: the loop polls, and all
+// bytes that are there arrived at the time of the poll.
 #pragma once
 
 #include <atomic>
@@ -15,7 +15,7 @@
 
 namespace neritic::testbed {
 
-// How a device does, for an operator.
+// The state of a device and its link, for an operator.
 struct DeviceHealth {
   std::string name, device, where;  // "suit", "mxtp", "udp://127.0.0.1:9763"
   net::LinkCounts link;

@@ -1,6 +1,6 @@
-// The buttons of a buoyancy jacket. UBCD packets say how long each button was pressed in all: what
-// was pressed while packets were lost is pressed for as long when the next one comes, so that loss
-// changes no gas. The other two forms say only what is pressed now. The thread of the device.
+// The buttons of a buoyancy jacket. UBCD packets say how long each button was pressed in all: the
+// next packet makes up for presses whose packets were lost, so that loss changes no amount of gas.
+// The other two forms say only which buttons are pressed now. The thread of the device.
 #pragma once
 
 #include "engine/net/jacket_wire.hpp"
@@ -13,8 +13,8 @@ class JacketAdapter final : public DeviceAdapter {
   TimeNs wakes_at_ns() const override;
   void tick(TimeNs now_ns, Outlet& out) override;
 
-  // After a silence of so long nothing is owed any more: a press that is not known to be wanted
-  // still must not fill a jacket. The group's own hold time lets the buttons go.
+  // After a silence of this length no lost press is made up for: a press that the diver may no
+  // longer want must not fill a jacket. The group's own hold time lets the buttons go.
   static constexpr TimeNs kSilence_ns = 500'000'000;
   // A smaller debt of a button is the wait for the next packet.
   static constexpr TimeNs kLeastOwed_ns = 15'000'000;

@@ -20,10 +20,10 @@ class MicrophoneAdapter final : public DeviceAdapter {
   // A block is ten seconds long.
   TimeNs max_age_ns() const override { return 15'000'000'000; }
 
-  // Packets wait for one that is missing so long, and so many at most.
+  // How long packets wait for a missing one, and how many at most.
   static constexpr TimeNs kWait_ns = 100'000'000;
   static constexpr std::size_t kMostWaiting = 16;
-  // A longer gap is none to fill: the analysis begins anew after it.
+  // A longer gap is not filled: the analysis begins anew after it.
   static constexpr double kMostFilled_s = 0.2;
 
  private:

@@ -1,6 +1,6 @@
-// A motion suit with gloves (Xsens MVN's MXTP, type 02) as a diver's body and hands. Of the other
-// types that MVN can send beside it, all are decoded and counted as unused. The thread of the
-// device.
+// A motion suit with gloves (Xsens MVN's MXTP, type 02) as a diver's body and hands. The other
+// types that MVN can send beside it are decoded and counted as unused.
+// The thread of the device.
 #pragma once
 
 #include "testbed/devices/adapter.hpp"

@@ -14,7 +14,7 @@ struct InstrumentNews {
   std::optional<Vec3> gaze;  // its direction in the world, where it is measured
 };
 
-// The HUD's thread has it.
+// Owned by the HUD's thread.
 class InstrumentFeed {
  public:
   virtual ~InstrumentFeed() = default;

@@ -25,7 +25,7 @@ class Survey {
  public:
   // The scene tells the sonars' kinds, the classes' names and where the true bottom lies (its
   // objects of class seabed). Must outlive it. out: where OUT/track/SONAR/ is written for each
-  // sonar that has something to say of a track.
+  // sonar with results of a track.
   Survey(const scene::Scene& scene, std::filesystem::path out, const SurveyOptions& options = {});
   ~Survey();
 
@@ -34,9 +34,9 @@ class Survey {
   // lie side by side, come with all else (coco/pings_FIRST.png). kBadInput where a side-scan's
   // picture camera is not in the frame or does not suit it.
   Status add(const FrameResult& result, std::uint32_t number, double time_s);
-  // All else; whether any sonar had something to say.
+  // Writes all else. True: some sonar had results.
   Result<bool> write(const FrameFacts& facts) const;
-  // Where a chart's cells, as nobody named them, are finer than its pings lie: what to name.
+  // Advice if the user named no cell size and a chart's cells are finer than its pings lie.
   std::optional<std::string> hint() const;
 
  private:

@@ -1,7 +1,7 @@
 // Rows as lines of a table: world axes, degrees, body axes forward, starboard, down. The table has
-// the thrusters of the vehicle with most, and the sensors that any vehicle has; what a vehicle has
-// not, or has not heard yet, is an empty cell. Divers have columns of their own (LOG.md). Read only
-// after construction: any thread.
+// the thrusters of the vehicle with most, and the sensors that any vehicle has; a cell is empty if
+// the vehicle lacks that sensor or has no reading of it yet. Divers have columns of their own
+// (LOG.md). Read only after construction: any thread.
 #pragma once
 
 #include <memory>

@@ -40,8 +40,8 @@ struct TankChange {
 
 struct HumanFigures {
   double path_m = 0.0, largest_speed_m_s = 0.0, deepest_m = 0.0, shallowest_m = 1e9;
-  // Dangers to the diver, over the dive, noted once a second. How long nothing came to
-  // breathe, all together and at a stretch, since when and of which tank at first; 0: never.
+  // Dangers over the dive, noted once a second. How long the diver got no gas, in all and at a
+  // stretch, since when and from which tank at first; 0: never.
   double out_of_gas_s = 0.0, out_of_gas_longest_s = 0.0, out_of_gas_from_s = 0.0;
   std::uint64_t out_of_gas_tank = 0;
   // By the dive computer: rate, the worst alarm and how long any lasted, and how far

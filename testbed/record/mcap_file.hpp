@@ -33,7 +33,7 @@ class McapFile final : public recording::McapOut {
   // The first failure: nothing is taken any more.
   bool failed() const { return failed_; }
   Status status() const;
-  // Any thread: little waits, so that what can be left out (an image) need not be.
+  // Any thread. False: much waits to be written, so that images should be left out.
   bool ready() const;
 
   // The owner, once: writes all, and gives the file its name.

@@ -1,5 +1,5 @@
 // Receivers of each step of a running simulation: the log, the plot, the recording, the saved
-// state, later a server. Their owner makes them before the first step and finishes them after the
+// state, a server. Their owner makes them before the first step and finishes them after the
 // last.
 #pragma once
 

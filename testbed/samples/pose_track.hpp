@@ -16,7 +16,7 @@ struct PoseTrack {
   static constexpr double kLeastInterval_s = 1e-3;
   // A faster change is a jump: a marker taken for another, an object put somewhere else.
   static constexpr double kMostSpeed_m_s = 50.0, kMostRate_rad_s = 100.0;
-  // An object goes on for this long, or for as long as between the newest two poses.
+  // After its newest pose an object moves on for this long, or for the time between the newest two.
   static constexpr double kLeastAhead_s = 0.1;
 
   Motion newest;       // world_from_object, when it was captured

@@ -1,5 +1,5 @@
-// Something that sends samples into a running scene: the keyboard's pilot, a recording, later a
-// suit or a client. The loop polls each of its sources once before it advances the simulation. A
+// Something that sends samples into a running scene: the keyboard's pilot, a recording, a suit, a
+// client. The loop polls each of its sources once before it advances the simulation. A
 // source with a thread of its own may push into the inbox at any time and needs no poll.
 #pragma once
 

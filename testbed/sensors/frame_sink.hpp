@@ -1,5 +1,5 @@
-// Takes the results of a run's frames: the files of `render`, a test, later a recording or a
-// server. The rendering thread calls all of it.
+// Takes the results of a run's frames: the files of `render`, a check, a test. The rendering thread
+// calls all of it.
 #pragma once
 
 #include "testbed/sensors/session.hpp"

@@ -37,11 +37,11 @@ class Session {
   gpu::Frames& frames() { return *frames_; }
   const render::GpuScene& gpu_scene() const { return *gpu_scene_; }
 
-  // Other settings and another mount of the scene's sonar of that index, from the next declared
+  // Gives the scene's sonar of that index other settings and another mount, from the next declared
   // frame on; frames in flight keep theirs. Everything else of a scene stays as it was created.
   void replace_sonar(std::size_t index, scene::Sonar sonar);
-  // The scene's lamp of that index at such a share of its intensity, from the next declared frame
-  // on. share: 0 to 1.
+  // Dims the scene's lamp of that index to a share of its intensity, 0 to 1, from the next declared
+  // frame on.
   void dim_lamp(std::size_t index, double share);
 
   // Adds the request's passes. The caller may add others that use the frame's handles, then begins

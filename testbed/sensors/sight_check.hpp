@@ -1,7 +1,7 @@
-// Says once a sensor, at its first frame, why it shows nothing (sight.hpp). What the frame brings
-// to the host anyhow is read. The rest costs one G-buffer, once: of a sonar only if it heard
-// nothing or nothing but its carrier's class, of a camera only if an object carries it. Rendering
-// thread.
+// Says once a sensor, at its first frame, why it shows nothing (sight.hpp). It reads the data that
+// the frame brings to the host anyhow; for the rest it draws one G-buffer, once: of a sonar only if
+// it heard nothing or nothing but its carrier's class, of a camera only if an object carries it.
+// Rendering thread.
 #pragma once
 
 #include <functional>

@@ -33,7 +33,7 @@ struct HeadState {
   std::vector<sonar::Sector> sectors;
   sonar::LeaningView upright;  // a plain pinhole, of the arrays
   sonar::BeamGrid shown;       // the cells that its pixels are counted by: beams where it can
-  // The view that beams gather from: it leans, but for cones and the published gather.
+  // The view that beams gather from: its rows are shifted, but for cones and the published gather.
   sonar::LeaningView sampled;
   // Where some of the scene's objects may be smaller than the cells: how large they are drawn.
   std::optional<render::LeastDrawn> least;

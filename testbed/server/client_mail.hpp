@@ -1,5 +1,5 @@
-// Kept by the network's thread for one client: all that it has not been given yet, in bounded
-// queues, of which a slow client loses the oldest, counted. The network's thread.
+// All that one client has not been given yet, in bounded queues: a slow client loses the oldest
+// items, counted. The network's thread.
 #pragma once
 
 #include <deque>

@@ -15,14 +15,14 @@ struct SolidBody {
   sim::BodyShape shape;
   sim::InverseMass inverse_mass{};
 };
-// Without parts.
+// The shape has no parts yet.
 SolidBody solid_body(const rov::Vehicle& vehicle);
 
 // How a step is taken.
 struct StepMethod {
   rov::Integrator integrator = rov::Integrator::kGuarded;
-  // A step in which something is touched is taken in so many parts: contacts are of first order in
-  // its length. 1: in one, as any other.
+  // The number of parts into which a step with a contact is cut, since contacts are of first order
+  // in its length. 1: it is not cut.
   int contact_parts = 1;
 };
 
@@ -38,7 +38,7 @@ struct VehicleStep {
 // The effect of contacts in a step.
 struct ContactReport {
   sim::MotionReport motion;
-  // Change of velocity that nothing else made: linear and angular, NED axes, m/s and rad/s.
+  // Change of velocity by contacts alone: linear and angular, NED axes, m/s and rad/s.
   rov::Vec6 change_ned;
 };
 
@@ -47,16 +47,16 @@ void add_part(const ContactReport& part, ContactReport& whole);
 
 // Linear and angular, NED axes.
 rov::Vec6 velocity_ned(const rov::State& state);
-// As if the water were empty.
+// The step without contacts.
 rov::State free_step(const VehicleStep& step);
-// For what else it meets; and what that made of it.
+// The vehicle as the solver of pairs takes it; and the motion that the solver returned.
 sim::PairBody pair_body(const VehicleStep& step, const rov::State& free);
 void set_motion(const sim::BodyMotion& motion, rov::State& state);
 // Whether two vehicles touched: their free steps then part.
 bool part_vehicles(const VehicleStep& a, rov::State& free_a, const VehicleStep& b,
                    rov::State& free_b, sim::PairMemory& memory);
-// Along what is solid. The axes of both sides differ by exchanged components alone, so the way
-// there and back keeps every bit of what is not touched. parted: it is not taken in parts.
+// The step with contacts. Axes of rov and of sim differ by exchanged components alone, so a vehicle
+// that touches nothing keeps every bit. parted: the step is not cut into parts.
 rov::State step_among(const sim::StaticWorld& solid, const VehicleStep& step,
                       const rov::State& free, bool parted, sim::ContactMemory& memory,
                       ContactReport* report = nullptr);

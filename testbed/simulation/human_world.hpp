@@ -62,12 +62,12 @@ struct PhysicsHuman {
   scene::SpeedOver speed_over = scene::SpeedOver::kWater;
   bool repeat = false;
   std::optional<diver::LimbRecording> recording;  // moves the limbs instead
-  // Presses the jacket's buttons from its first row on, instead of who swims.
+  // Presses the jacket's buttons from its first row on, in place of the swimmer.
   std::optional<diver::ButtonRecording> buttons;
   sim::BodyShape shape;  // for contacts: model axes (starboard, up, back) of who swims
-  // The joints of what is drawn: nodes of its model, one a segment, then those of gear that it has;
-  // how its arms are spread, how much larger than the model the diver is, and the scale of each
-  // node of gear: 0 takes off what this diver has not.
+  // The joints of the drawn model: its nodes, one a segment, then those of gear; how far its arms
+  // are spread; the diver's size over the model's; and the scale of each node of gear: 0 removes
+  // gear that this diver does not wear.
   std::vector<int> nodes;
   double arms_spread_rad = 0.0, scale = 1.0;
   std::vector<Vec3> gear_scales;
@@ -79,13 +79,13 @@ struct PhysicsHuman {
 // Errors in one line: files that do not read, models without the segments' nodes.
 Result<PhysicsHuman> physics_human(const scene::Scene& scene, std::size_t object);
 
-// The speed through the water that gives one over ground, in that current: the diver swims aslant
-// into a current from the side.
+// The speed through the water at which a diver makes that speed over ground along way_ned in that
+// current, swimming aslant against a current from the side.
 double through_water_m_s(double over_ground_m_s, const Vec3& way_ned, const Vec3& current_ned_m_s);
 // The diver's present goal. One who swims by the speed over ground feels the current.
 diver::SwimGoal swim_goal(const PhysicsHuman& human, const HumanPhysics& state);
 
-// A diver on the way through a step, for what touches: world axes.
+// A diver's motion in a step, for contacts; world axes.
 struct HumanStep {
   sim::InverseMass inverse_mass{};
   Pose before;
@@ -96,11 +96,11 @@ struct HumanStep {
 diver::HumanInputs acting_inputs(const PhysicsHuman& human, const DiverInputs& inputs,
                                  std::uint64_t step, double dt_s, const Ability& able,
                                  HumanPhysics& state);
-// dt_s later, as if the water were empty. borrowed: breathed from in place of the own tanks.
+// The diver dt_s later, without contacts. borrowed: breathed from in place of the own tanks.
 HumanStep free_human(const PhysicsHuman& human, const DiverInputs& inputs,
                      const diver::WaterFlow& water, std::uint64_t step, double dt_s,
                      const Ability& able, diver::BorrowedTank* borrowed, HumanPhysics& state);
-// As pairs are solved.
+// The diver as the solver of pairs takes it.
 sim::PairBody pair_body(const PhysicsHuman& human, const HumanStep& moving);
 // Whether a diver touched a vehicle, or another diver: the free steps of both then part, by equal
 // and opposite impulses.
@@ -108,7 +108,7 @@ bool part_from_vehicle(const PhysicsHuman& human, HumanStep& moving, const Vehic
                        rov::State& free, sim::PairMemory& memory);
 bool part_humans(const PhysicsHuman& a, HumanStep& moving_a, const PhysicsHuman& b,
                  HumanStep& moving_b, double dt_s, sim::PairMemory& memory);
-// Along what is solid, and the dive computer's sample. parted: touched one that moves.
+// Moves along solid things, and samples the dive computer. parted: a moving body was touched.
 void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const HumanStep& moving,
                bool parted, std::uint64_t step, double dt_s, const Ability& able,
                sim::ContactMemory& memory, HumanPhysics& state);

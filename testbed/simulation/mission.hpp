@@ -27,8 +27,8 @@ class MissionGuide {
   bool repeats() const { return repeat_; }
   double speed_m_s() const { return speed_m_s_; }  // 0: none is said
   scene::SpeedOver speed_over() const { return speed_over_; }
-  // The ways between its waypoints, from start on; where it repeats the way back too. Of an orbit
-  // eight parts, of a station its place.
+  // The legs between its waypoints, from start on, and the leg back if it repeats. An orbit has
+  // eight legs, a station its place alone.
   struct LegPoint {
     Vec3 place_ned_m{0.0};
     std::optional<double> heading_rad;  // where it faces there; none: anywhere

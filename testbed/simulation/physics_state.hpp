@@ -29,7 +29,7 @@ struct MissionState {
   // The pilot of the last control period: 0 the mission, 1 a pilot, 2 a setpoint from outside, 3 a
   // velocity from outside, 4 forces of thrusters from outside.
   std::uint64_t piloted = 0;
-  // By so much faster than the speed over ground that it wants does it push through the water.
+  // How much faster than the wanted speed over ground it pushes through the water.
   double more_m_s = 0.0;
   Vec3 lean_ned_m{0.0};  // of the controller's place against a steady push (rov::lean)
   // The controller's set value.

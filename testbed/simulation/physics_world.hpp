@@ -128,8 +128,8 @@ class PhysicsWorld {
   Vec3 current_ned_m_s(const Vec3& position_ned_m, double time_s) const;
   // The newest readings of a vehicle's sensors; null where it has none.
   const rov::SensorReadings* readings(const PhysicsState& state, std::size_t vehicle) const;
-  // How a vehicle that flies on what it measures takes itself to move; null, none: it flies on its
-  // true state.
+  // The motion of a vehicle as its own sensors estimate it; null, or absent: the vehicle flies on
+  // its true state.
   const rov::NavigationState* navigation(const PhysicsState& state, std::size_t vehicle) const;
   std::optional<rov::NavigationEstimate> estimate(const PhysicsState& state,
                                                   std::size_t vehicle) const;

@@ -1,6 +1,6 @@
 // A hash of what a scene's physics is built from: files, bodies, missions, currents, solid things.
-// States are saved with it, so that none goes on in another scene. What does not move by physics
-// and is in nobody's way (cameras, sonars, lamps, water colour) does not count.
+// States are saved with it, so that none goes on in another scene. Things that neither move by
+// physics nor collide (cameras, sonars, lamps, water colour) do not count.
 #pragma once
 
 #include <cstdint>

@@ -23,7 +23,7 @@ struct LabOptions {
   bool gloves = true;
 };
 
-// How well a device's clock was found.
+// A device's clock as it is, and the error of the adapter's estimate of it.
 struct ClockError {
   std::string name;
   bool has_clock = false;

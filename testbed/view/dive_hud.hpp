@@ -44,7 +44,7 @@ class DiveHud {
   // devices: of the run; nullptr: none.
   DiveHud(gpu::Device& device, gpu::Frames& frames, LivePhysics& physics, DiveHudOptions options,
           const Devices* devices = nullptr);
-  // The instruments of a dive that anything feeds; options.diver means nothing then.
+  // The instruments of any feed; options.diver is ignored.
   DiveHud(gpu::Device& device, gpu::Frames& frames, std::unique_ptr<InstrumentFeed> feed,
           DiveHudOptions options);
 

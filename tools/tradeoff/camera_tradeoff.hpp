@@ -41,7 +41,7 @@ double rms_error(const ImageU8& shown, const ImageU8& wanted);
 // smaller than 1/67 degree is not seen. 1: from black to white.
 double perceived_error(const ImageU8& shown, const ImageU8& wanted);
 
-// In the folder camera.csv, .md, .json and .plot.json, and where it can be drawn (true) camera.png.
+// Writes camera.csv, .md, .json and .plot.json into the folder. True: camera.png was drawn too.
 Result<bool> write_camera_tradeoff(const std::filesystem::path& folder,
                                    const CameraTradeoff& tradeoff);
 

@@ -50,8 +50,8 @@ std::string deco_md(const DecoTradeoff& t) {
       "of "
       "its linear depth changes: the largest error of a tissue (bar) and of the ceiling of GF 30 "
       "(m) "
-      "over all samples, and microseconds of one core an hour of diving. What is left of the exact "
-      "methods' error is what happens between two samples: a corner.\n\nKnee: {}, "
+      "over all samples, and microseconds of one core an hour of diving. The exact methods err "
+      "only by corners of the dive between two samples.\n\nKnee: {}, "
       "{:g} s, {:.1e} bar, {:.2g} m, {:.3g} us.\n",
       name_of(best.method), best.step_s, best.error_bar, best.ceiling_error_m, best.us_an_hour);
   append_table(out, "The worst of all dives", worst_of(t));

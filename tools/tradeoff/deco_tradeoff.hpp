@@ -48,7 +48,7 @@ std::vector<DecoPoint> worst_of(const DecoTradeoff& tradeoff);
 // The knee of the front of all methods, over the worst of the dives; both axes as they are.
 DecoPoint knee(const DecoTradeoff& tradeoff);
 
-// In the folder deco.csv, .md, .json and .plot.json, and where it can be drawn (true) deco.png.
+// Writes deco.csv, .md, .json and .plot.json into the folder. True: deco.png was drawn too.
 Result<bool> write_deco_tradeoff(const std::filesystem::path& folder, const DecoTradeoff& tradeoff);
 
 }  // namespace neritic::tools

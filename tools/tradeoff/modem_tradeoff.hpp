@@ -20,7 +20,7 @@ struct ModemPoint {
 // Truth: Snell's integral over the depth by 200 000 midpoints, its ray parameter by bisection; for
 // rays that do not turn. runs: of each cost's timing.
 std::vector<ModemPoint> run_modem_tradeoff(int runs);
-// In the folder modem.csv, .md and .plot.json, and where it can be drawn (true) modem.png.
+// Writes modem.csv, .md and .plot.json into the folder. True: modem.png was drawn too.
 Result<bool> write_modem_tradeoff(const std::filesystem::path& folder,
                                   const std::vector<ModemPoint>& points);
 

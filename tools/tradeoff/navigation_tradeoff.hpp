@@ -39,8 +39,8 @@ struct NavigationTradeoff {
 };
 Result<NavigationTradeoff> run_navigation_tradeoff(const NavigationTradeoffOptions& options);
 
-// In the folder navigation.csv, .md, .json and .plot.json, and where it can be drawn (true)
-// navigation.png.
+// Writes navigation.csv, .md, .json and .plot.json into the folder. True: navigation.png was
+// drawn too.
 Result<bool> write_navigation_tradeoff(const std::filesystem::path& folder,
                                        const NavigationTradeoff& tradeoff);
 

@@ -44,7 +44,7 @@ struct NetworkTradeoff {
 // An Error where the scene has no diver with devices, or a port is taken.
 Result<NetworkTradeoff> run_network_tradeoff(const NetworkTradeoffOptions& options);
 
-// In the folder network.csv, .md, .json, .plot.json and, where it can be drawn (true), network.png.
+// Writes network.csv, .md, .json and .plot.json into the folder. True: network.png was drawn too.
 Result<bool> write_network_tradeoff(const std::filesystem::path& folder,
                                     const NetworkTradeoff& tradeoff);
 

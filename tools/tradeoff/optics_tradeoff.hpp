@@ -33,7 +33,7 @@ struct OpticsTradeoff {
 };
 Result<OpticsTradeoff> run_optics_tradeoff(const OpticsTradeoffOptions& options);
 
-// In the folder optics.csv, .md, .json and .plot.json, and where it can be drawn (true) optics.png.
+// Writes optics.csv, .md, .json and .plot.json into the folder. True: optics.png was drawn too.
 Result<bool> write_optics_tradeoff(const std::filesystem::path& folder,
                                    const OpticsTradeoff& tradeoff);
 

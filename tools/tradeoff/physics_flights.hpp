@@ -64,8 +64,8 @@ struct Flight {
 // truth is an adaptive extrapolation of high order.
 Result<Flight> square_flight(bool lag, double seconds);
 // The same vehicle by a controller in the loop, between moving setpoints in a current that is
-// sheared and turns with time; or with pulses in whole microseconds, which make of the least
-// difference one of a pulse.
+// sheared and turns with time; or with pulses in whole microseconds, which turn the least
+// difference into one of a whole pulse.
 Result<Flight> mission_flight(bool pulses, double seconds);
 // The same vehicle set down on sand, from 3 s on driven along it, lifted, from 10 s on driven
 // against a wall, along that, and away; the truth is the recommended integrator at a step so short

@@ -61,8 +61,8 @@ const PhysicsPoint* knee(const PhysicsTradeoff& tradeoff, const std::string& fli
 // lag is given.
 const PhysicsPoint* cheapest(const PhysicsTradeoff& tradeoff, double max_error_m);
 
-// In the folder physics.csv, .md, .json and .plot.json, and where it can be drawn (true)
-// physics.png.
+// Writes physics.csv, .md, .json and .plot.json into the folder. True: physics.png was
+// drawn too.
 Result<bool> write_physics_tradeoff(const std::filesystem::path& folder,
                                     const PhysicsTradeoff& tradeoff);
 

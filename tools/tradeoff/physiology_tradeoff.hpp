@@ -72,8 +72,8 @@ const BreathPoint* breath_knee(const PhysiologyTradeoff& tradeoff, const std::st
 // a missed beat.
 const HeartPoint* heart_choice(const PhysiologyTradeoff& tradeoff);
 
-// In the folder physiology.csv, .md, .json and .plot.json, and where it can be drawn (true)
-// physiology.png.
+// Writes physiology.csv, .md, .json and .plot.json into the folder. True: physiology.png was
+// drawn too.
 Result<bool> write_physiology_tradeoff(const std::filesystem::path& folder,
                                        const PhysiologyTradeoff& tradeoff);
 

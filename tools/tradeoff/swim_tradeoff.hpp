@@ -63,7 +63,7 @@ const SwimPoint* knee(std::span<const SwimPoint> points, const std::string& swim
 const SwimPoint* cheapest_within(std::span<const SwimPoint> points, const std::string& swim,
                                  double error_m);
 
-// In the folder swim.csv, .md, .json and .plot.json, and where it can be drawn (true) swim.png.
+// Writes swim.csv, .md, .json and .plot.json into the folder. True: swim.png was drawn too.
 Result<bool> write_swim_tradeoff(const std::filesystem::path& folder, const SwimTradeoff& tradeoff);
 
 }  // namespace neritic::tools

@@ -1,5 +1,5 @@
-// How far an image of a sonar lies from the rays', and what chance does in one. Pure functions;
-// any thread.
+// The error of a sonar's image against the rays', and the statistics of its speckle and noise. Pure
+// functions; any thread.
 #pragma once
 
 #include <span>

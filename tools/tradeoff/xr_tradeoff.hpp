@@ -54,7 +54,7 @@ double acuity_weight(double eccentricity_deg);
 double weighted_error(const ImageU8& shown, const ImageU8& wanted, const FrustumTangents& view,
                       bool weighted);
 
-// In the folder xr.csv, .md, .json and .plot.json, and where it can be drawn (true) xr.png.
+// Writes xr.csv, .md, .json and .plot.json into the folder. True: xr.png was drawn too.
 Result<bool> write_xr_tradeoff(const std::filesystem::path& folder, const XrTradeoff& tradeoff);
 
 }  // namespace neritic::tools

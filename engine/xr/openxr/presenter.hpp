@@ -16,7 +16,7 @@ class Presenter {
   // The device must outlive it.
   static Result<std::unique_ptr<Presenter>> create(gpu::Device& device);
   // from: sRGB-encoded, colour multiplied by alpha, as many layers as target, scaled to its size.
-  // opaque: alpha counts as 1. Ends as the runtime wants it; a pass of that name.
+  // opaque: alpha counts as 1. Adds a pass of that name; the image ends as the runtime wants it.
   Status declare(graph::FrameGraph& graph, const std::string& pass, graph::ImageHandle from,
                  const gpu::Image& target, bool opaque);
 

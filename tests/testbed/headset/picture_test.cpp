@@ -32,8 +32,8 @@ class HeadsetPicture : public HeadsetRun {
             .ok());
     return scene::load_scene(scratch / "ball.toml").value();
   }
-  // The middle of the ball's pixels, by the depth that went to the runtime. What the lenses hide is
-  // at the near plane.
+  // The middle of the ball's pixels, by the depth that went to the runtime. Pixels that
+  // the lenses hide are at the near plane.
   Place seen(int frame, int view) const {
     const auto depth =
         read_npy(fmt::format("{}/frame_{:04}_view_{}_depth.npy", folder(), frame, view)).value();

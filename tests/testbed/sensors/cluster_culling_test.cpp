@@ -246,7 +246,7 @@ bool hides_backs(gpu::Device& device, double distance_m, double scale, bool flip
 
 TEST_F(ClusterCullingTest, BackFacesAreLeftOutOnlyOutsideAndBeyondTheNearPlane) {
   EXPECT_TRUE(hides_backs(device(), 3.0, 1.0, false));
-  // The near plane's corners are .173 m away; of how a matrix stretches a bound is taken, sqrt(3)
+  // The near plane's corners are 0.173 m away; of how a matrix stretches a bound is taken, sqrt(3)
   // times.
   EXPECT_TRUE(hides_backs(device(), 1.31, 1.0, false));
   EXPECT_FALSE(hides_backs(device(), 1.17, 1.0, false));

@@ -244,7 +244,7 @@ TEST_F(SonarExtremes, AFloorFillsEveryBin) {
 }
 
 TEST_F(SonarExtremes, AFloorSeenAtAHundredthOfADegree) {
-  // Rows from level to .02 degrees down; the floor, 2 mm below, is met at 2 mm / sin.
+  // Rows from level to 0.02 degrees down; the floor, 2 mm below, is met at 2 mm / sin.
   constexpr double kHeight_m = 0.002, kFar_m = 50.0;
   scene::Sonar sonar = small_sonar();
   sonar.azimuth_rad = radians(2.0);

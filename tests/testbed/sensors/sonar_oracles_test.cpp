@@ -55,7 +55,7 @@ TEST_F(SonarOracles, APointTargetsAzimuthCutIsThePattern) {
   scene.sonars[0].terms.beam.azimuth = scene::SonarPattern{.half_power_rad = radians(1.0)};
   const SonarFrame heard = ping(device(), scene);
   const auto cut = azimuth_cut(heard);
-  // .886 lambda / L: the line whose half power that width is.
+  // 0.886 lambda / L: the line whose half power that width is.
   EXPECT_NEAR(half_power_steps(cut) * 0.05, 1.0, 0.01);
   const double length = 0.885893 / (2.0 * std::sin(radians(0.5)));
   const double highest = *std::max_element(cut.begin(), cut.end());

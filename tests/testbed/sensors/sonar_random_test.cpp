@@ -323,8 +323,8 @@ class AlongRange {
 
 // Along range the picture of speckle comes nearer with the world, and is the same picture: bin for
 // bin after whole bins, as a window that slides over the field after parts of one. A slice that a
-// bin's edge cuts holds two amplitudes, not a field: without a pulse its correlation is .67 where
-// the field's is .56.
+// bin's edge cuts holds two amplitudes, not a field: without a pulse its correlation is 0.67 where
+// the field's is 0.56.
 TEST_F(SonarRandom, SpeckleComesNearerWithTheWorld) {
   for (const bool pulse : {false, true}) {
     AlongRange head(device(), pulse);

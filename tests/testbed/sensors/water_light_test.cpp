@@ -47,7 +47,7 @@ Vec3 exposed_radiance(const Vec3& encoded) {
         encoded[i] <= 0.04045 ? encoded[i] / 12.92 : std::pow((encoded[i] + 0.055) / 1.055, 2.4);
   Vec3 y = glm::inverse(to_srgb) * before_gamut(linear);
   for (int i = 0; i < 3; ++i) {
-    // y = (v^2 + .0245786 v - .000090537) / (.983729 v^2 + .432951 v + .238081).
+    // y = (v^2 + 0.0245786 v - 0.000090537) / (0.983729 v^2 + 0.432951 v + 0.238081).
     const double a = 1.0 - 0.983729 * y[i], b = 0.0245786 - 0.432951 * y[i],
                  c = -0.000090537 - 0.238081 * y[i];
     y[i] = (-b + std::sqrt(b * b - 4.0 * a * c)) / (2.0 * a);
@@ -342,7 +342,7 @@ Vec3 glow_integral(const View& view, const render::WaterOptics& optics, double t
 // The shader takes four samples a lamp: within 5 % here.
 TEST_F(WaterLight, ALampsBeamGlowsAsTheIntegralOfSingleScattering) {
   NERITIC_ASSERT_OK(const render::WaterOptics optics, render::jerlov_optics("III"));
-  // Deep down and level; then up from .7 m below the surface, where the water ends.
+  // Deep down and level; then up from 0.7 m below the surface, where the water ends.
   for (const bool up : {false, true}) {
     const View view{.water = "III",
                     .depth_m = up ? 0.7 : 20.0,

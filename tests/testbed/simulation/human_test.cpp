@@ -98,7 +98,7 @@ waypoints_m = [[0, -12, -20]]
   const HumanPhysics& human = dive.state().humans()[0];
   EXPECT_GT(human.contact.touched_steps, 10u);
   EXPECT_LT(human.contact.deepest_m, 0.05);
-  EXPECT_GT(farthest, -5.0);  // the hips; the head is .8 m before them
+  EXPECT_GT(farthest, -5.0);  // the hips; the head is 0.8 m before them
   EXPECT_TRUE(sim::all_finite(dive.state()));
 }
 
@@ -172,12 +172,12 @@ TEST(HumanDive, IsDrawnAtItsHeightWithItsGear) {
       bounds_of("height_m = 2.05\nfins = { length_m = 0.8, width_m = 0.2 }\n", &tall_m);
   EXPECT_NEAR(small_m / usual_m, 1.45 / 1.80, 0.01);
   EXPECT_NEAR(tall_m / usual_m, 2.05 / 1.80, 0.01);
-  // The model's own: the tank behind the back to .36 m, blades before the toes to .58 m.
+  // The model's own: the tank behind the back to 0.36 m, blades before the toes to 0.58 m.
   EXPECT_NEAR(usual.max.z, 0.36, 0.02);
   EXPECT_NEAR(usual.min.z, -0.58, 0.02);
   EXPECT_LT(bare.max.z, 0.20);          // no tank
   EXPECT_GT(bare.min.z, -0.22);         // no fins: toes and mask
-  EXPECT_LT(tall.min.z, -0.165 - 0.8);  // blades of .8 m
+  EXPECT_LT(tall.min.z, -0.165 - 0.8);  // blades of 0.8 m
   EXPECT_GT(tall.min.z, -0.22 * 2.05 / 1.80 - 0.82);
 }
 
@@ -208,7 +208,7 @@ TEST(HumanDive, RecordedLimbsSwim) {
   const Vec3 from = swimmer_pose(dive).position_m;
   dive.run(5.0);
   const double speed_m_s = glm::distance(swimmer_pose(dive).position_m, from) / 5.0;
-  EXPECT_GT(speed_m_s, 0.4);  // .54 m a beat
+  EXPECT_GT(speed_m_s, 0.4);  // 0.54 m a beat
   EXPECT_LT(speed_m_s, 0.7);
   EXPECT_EQ(dive.state().humans()[0].human.far_joints, 0u);
   EXPECT_LT(dive.state().humans()[0].human.life.limb_power_w, 300.0);

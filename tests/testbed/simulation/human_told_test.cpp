@@ -69,7 +69,7 @@ TEST(HumanDive, FiguresSayWhatEndangeredTheDiver) {
   EXPECT_NEAR(f.out_of_gas_s, dark_s, 2.0);
   EXPECT_GE(f.out_of_gas_from_s, first_s - 0.1);
   EXPECT_EQ(f.out_of_gas_tank, 0u);
-  EXPECT_EQ(f.oxygen, diver::RiskLevel::kSevere);  // .5 of 5 bar
+  EXPECT_EQ(f.oxygen, diver::RiskLevel::kSevere);  // 0.5 of 5 bar
   EXPECT_NEAR(f.most_po2_bar, 0.5 * 1e-5 * (101325.0 + 1028.0 * 9.80665 * f.deepest_m), 0.05);
   EXPECT_EQ(f.above_ceiling_m, 0.0);
 }
