@@ -119,7 +119,7 @@ class Crops(unittest.TestCase):
 
 
 FAKE = """import numpy as np
-CLASSES = ["nothing", "bar"]
+CLASSES, SCENES, STEPS = ["nothing", "bar"], 10, 12
 class Maker:
     def __init__(self, tools, split, seed):
         self.rng = np.random.Generator(np.random.Philox(key=seed + len(split)))
@@ -140,8 +140,8 @@ class Training(unittest.TestCase):
         spec = importlib.util.spec_from_file_location("experiment_main", os.path.join(TOOLS, "__main__.py"))
         program = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(program)
-        before = training.STEPS, training.LOOKS, training.EACH, training.EACH_CHOOSE
-        training.STEPS, training.LOOKS, training.EACH, training.EACH_CHOOSE = 12, 2, 8, 4
+        before = training.LOOKS, training.EACH, training.EACH_CHOOSE
+        training.LOOKS, training.EACH, training.EACH_CHOOSE = 2, 8, 4
         with tempfile.TemporaryDirectory() as folder:
             with open(os.path.join(folder, "fake_crops.py"), "w") as file:
                 file.write(FAKE)
@@ -163,7 +163,7 @@ class Training(unittest.TestCase):
                 self.assertGreater(look.shares(bar.one("bar")[0])[1], look.shares(bar.one("nothing")[0])[1] + 0.2)
             finally:
                 sys.path.remove(folder)
-                training.STEPS, training.LOOKS, training.EACH, training.EACH_CHOOSE = before
+                training.LOOKS, training.EACH, training.EACH_CHOOSE = before
 
 
 class Pages(unittest.TestCase):

@@ -21,6 +21,7 @@ LENGTHS_M = {"diver": 1.8, "rov": 0.6, "shark": 3.0, "fish": 0.21}
 SIDE = 64
 LEAST_SHARE, LEAST_CONTRAST, MOST_NOISE = 0.03, 7.5, 2.5
 LESSON = {"margin": 1.5}  # how a scene is opened to learn from
+SCENES, STEPS = 60, 1600  # to learn from; of the training
 FAR = [900.0, 900.0, -40.0]
 ASSETS = os.path.normpath(os.path.join(SHIPPED, ".."))
 # Beside plant and rock, in scenes to learn from: three a scene, of these.

@@ -22,7 +22,7 @@ from runner import Tools
 from scenario import Failed, Refused
 
 EACH, EACH_CHOOSE = 12, 10  # crops of a class and a scene
-STEPS, BATCH, THREADS, LOOKS, SCENES = 1600, 64, 1, 8, 60
+BATCH, THREADS, LOOKS = 64, 1, 8
 LEAST_SCENES = 10
 
 
@@ -97,14 +97,14 @@ def train(name, maker, classes, channels, program, scenes, seed, workers, out, q
         import torch
     except ModuleNotFoundError:
         raise Failed("train: no PyTorch here; tools/setup detector installs python3-torch") from None
-    scenes = SCENES if scenes is None else scenes
+    scenes = maker.SCENES if scenes is None else scenes
     if scenes < LEAST_SCENES:
         raise Refused(f"--runs: found {scenes}; accepted: {LEAST_SCENES} scenes or more, to learn from")
     x, y = gather(maker, program, "train", scenes, 1000 * seed, EACH, workers, not quiet)
     xv, yv = gather(maker, program, "choose", max(3, scenes // 10), 1000 * seed, EACH_CHOOSE, workers, not quiet)
     if not quiet:
         print(f"{len(y)} crops to learn from, {len(yv)} to choose by: {np.bincount(y, minlength=len(classes)).tolist()}", flush=True)
-    net, best = fit(torch, (x, y), (xv, yv), channels, classes, seed, quiet)
+    net, best = fit(torch, (x, y), (xv, yv), channels, classes, maker.STEPS, seed, quiet)
     about = {"kind": "classifier", "classes": classes, "side": 64, "channels": channels, "normalise": "crop",
              "made_by": f"neritic experiment train_{name} --runs {scenes} --seed {seed}",
              "share_of_crops_to_choose_by": round(best, 4)}
@@ -112,14 +112,14 @@ def train(name, maker, classes, channels, program, scenes, seed, workers, out, q
     return best
 
 
-def fit(torch, lessons, chosen_by, channels, classes, seed, quiet):
+def fit(torch, lessons, chosen_by, channels, classes, steps, seed, quiet):
     """(network of calibrated logits, share of the crops to choose by that it names rightly)."""
     torch.manual_seed(seed)
     torch.set_num_threads(THREADS)
     torch.use_deterministic_algorithms(True)
     net = network(torch, channels, len(classes)).to(memory_format=torch.channels_last)
     seen = torch.tensor(_blobs(chosen_by[0])).to(memory_format=torch.channels_last), torch.tensor(chosen_by[1])
-    best = _learn(torch, net, variations.of(torch, *lessons, seed), seen, quiet)
+    best = _learn(torch, net, variations.of(torch, *lessons, seed), seen, steps, quiet)
     temperature = _temperature(torch, _logits(torch, net, seen[0]), seen[1])
     with torch.no_grad():  # into the last layer, so that the file's shares are calibrated
         net.last.weight /= temperature
@@ -127,15 +127,15 @@ def fit(torch, lessons, chosen_by, channels, classes, seed, quiet):
     return net, best
 
 
-def _learn(torch, net, batches, seen, quiet):
+def _learn(torch, net, batches, seen, steps, quiet):
     """Leaves the best of LOOKS passes in net; returns the share of the crops to choose by that it names rightly."""
     optimiser = torch.optim.AdamW(net.parameters(), lr=1e-3, weight_decay=2e-2)
-    rate = torch.optim.lr_scheduler.OneCycleLR(optimiser, max_lr=5e-3, total_steps=STEPS)
+    rate = torch.optim.lr_scheduler.OneCycleLR(optimiser, max_lr=5e-3, total_steps=steps)
     loss_of = torch.nn.CrossEntropyLoss(label_smoothing=0.05)
     best, best_state = -1.0, None
     with concurrent.futures.ThreadPoolExecutor(1) as ahead:  # the next batch while the network learns
         waiting = ahead.submit(batches, BATCH)
-        for step in range(STEPS):
+        for step in range(steps):
             net.train()
             x, y = waiting.result()
             waiting = ahead.submit(batches, BATCH)
@@ -143,12 +143,12 @@ def _learn(torch, net, batches, seen, quiet):
             loss_of(net(x), y).backward()
             optimiser.step()
             rate.step()
-            if (step + 1) % (STEPS // LOOKS) == 0:
+            if (step + 1) % (steps // LOOKS) == 0:
                 share = float((_logits(torch, net, seen[0]).argmax(1) == seen[1]).float().mean())
                 if share >= best:
                     best, best_state = share, {k: v.clone() for k, v in net.state_dict().items()}
                 if not quiet:
-                    print(f"step {step + 1} of {STEPS}: {100 * share:.1f} % of the crops to choose by", flush=True)
+                    print(f"step {step + 1} of {steps}: {100 * share:.1f} % of the crops to choose by", flush=True)
     net.load_state_dict(best_state)
     return best
 
