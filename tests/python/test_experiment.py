@@ -119,7 +119,7 @@ class Crops(unittest.TestCase):
 
 
 FAKE = """import numpy as np
-CLASSES, SCENES, STEPS = ["nothing", "bar"], 10, 12
+CLASSES, SCENES, STEPS = ["nothing", "bar"], 10, 24
 class Maker:
     def __init__(self, tools, split, seed):
         self.rng = np.random.Generator(np.random.Philox(key=seed + len(split)))

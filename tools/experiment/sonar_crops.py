@@ -15,7 +15,7 @@ from rotations import quaternion
 CLASSES = ["nothing", "diver", "rov", "mine", "tyre"]
 LABELS = {"diver": 4, "rov": 5, "mine": 12, "tyre": 11}
 SIDE, LEAST_BINS, WINDOW_M = 64, 24, 4.0
-SCENES, STEPS = 18, 700  # to learn from; of the training
+SCENES, STEPS = 40, 1600  # to learn from; of the training
 SPLITS = {"train": {"bottoms": ["sand", "gravel", "mud"], "khz": [550, 750, 1200], "beam": [0.8, 1.0, 1.4]},
           "choose": {"bottoms": ["sand", "mud"], "khz": [650], "beam": [0.9, 1.3]},
           "test": {"bottoms": ["rock", "silt"], "khz": [900], "beam": [0.6, 1.2]}}
