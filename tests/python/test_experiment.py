@@ -166,6 +166,16 @@ class Training(unittest.TestCase):
                 training.LOOKS, training.EACH, training.EACH_CHOOSE = before
 
 
+class Outcomes(unittest.TestCase):
+    @unittest.skipUnless(os.path.exists(detector.model_of("shipped")), "no shipped detector")
+    def test_every_level_of_every_knob_is_one_that_the_task_accepts(self):
+        import outcomes
+        import shark
+        asked = SimpleNamespace(runs=2, seed=None, set=[])
+        made = outcomes.plans({"shark": shark}, asked)
+        self.assertEqual([len(p.list_runs()) for p in made], [2 * len(k[1]) for k in outcomes.KNOBS])
+
+
 class Pages(unittest.TestCase):
     def test_the_page_of_all_tells_what_failed_and_what_is_missing(self):
         criterion = {"measure": "m", "statistic": "median", "where": {}, "less": None, "found": 0.5, "n": 3, "at_most": 1.0,

@@ -22,22 +22,30 @@ KNOBS = [
     ("control_hz", [1.0, 2.0, 5.0, 10.0, 20.0, 60.0], [], "the ROV is told its place, times a second"),
     ("delay_s", [0.0, 0.1, 0.2, 0.5, 1.0], [], "delay of the detector's word, s"),
     ("navigation", ["truth", "measured"], [], "the ROV flies by"),
-    ("crop_px", [12, 16, 24, 32, 64], LOOKS, "side of the gaze crops, pixels"),
+    ("crop_px", [16, 24, 32, 48, 64], LOOKS, "side of the gaze crops, pixels"),
     ("detector", ["assumed", "shipped"], LOOKS[1:], "nobody looks; the shipped detector"),
     ("sonar_quality", ["draft", "standard", "reference"], ['shark_known_by="sonar"'], "quality of the sonar that knows the shark"),
 ]
 RUNS = 30
 
 
-def run(kinds, one, asked):
-    """one(plan): the runner of a scenario, as __main__ has it. Returns the summaries."""
-    rows = []
+def plans(kinds, asked):
+    """The scenario of each knob, all checked before the first runs."""
+    out = []
     for knob, levels, others, words in KNOBS:
         # From 1.0 to 1.5 m beside, where times spread least: shark_delay's, without its delay.
         sets = ["delay_s=0.0", f"{knob}={json.dumps(levels)}", *others, *asked.set]
         plan = scenario.Scenario(scenario.path_of("shark_delay"), kinds, asked.runs or RUNS, asked.seed, sets)
         plan.criteria = []
         plan.title = f"Time to block over {words}"
+        out.append(plan)
+    return out
+
+
+def run(kinds, one, asked):
+    """one(plan): the runner of a scenario, as __main__ has it. Returns the summaries."""
+    rows = []
+    for (knob, levels, _, _), plan in zip(KNOBS, plans(kinds, asked)):
         results = one(plan, os.path.join(asked.out, knob))
         for level in levels:
             of = [r for r in results if r["condition"].get(knob) == level]
@@ -88,11 +96,11 @@ def _figure(rows, style):
     words = {k[0]: k[3] for k in KNOBS}
     across = 3
     down = -(-len(names) // across)
-    fig = style.figure(940, 50 + 250 * down)
+    fig = style.figure(940, 70 + 250 * down)
     top = max(r["time_high_s"] or r["time_to_block_s"] or 0 for r in rows) * 1.15
     for i, knob in enumerate(names):
         of = [r for r in rows if r["knob"] == knob]
-        left, up = 62 + 305 * (i % across), 40 + 250 * (i // across)
+        left, up = 62 + 305 * (i % across), 62 + 250 * (i // across)
         ax = style.area(fig, left, up, left + 235, up + 160)
         for k, r in enumerate(of):
             if r["time_to_block_s"] is not None:
