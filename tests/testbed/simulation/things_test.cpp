@@ -22,7 +22,7 @@ void grip(TestDive& dive, const std::string& stream, GripChoice choice) {
   EXPECT_TRUE(send(*dive.simulation, dive.world->streams().find(stream).value(), GripUse{choice}));
 }
 
-Vec3 place(const TestDive& dive) {
+Vec3 tool_place(const TestDive& dive) {
   return dive.state().objects()[0].motion.pose.position_m;
 }
 
@@ -38,10 +38,10 @@ TEST(SceneThing, AFreeOneFallsAsItsClosedFormAndRestsOnTheFloor) {
   dive.run(1.0);
   EXPECT_NEAR(-dive.state().objects()[0].motion.velocity_m_s.y, terminal * std::tanh(1.0 / tau),
               0.01 * terminal);
-  EXPECT_NEAR(-2.0 - place(dive).y, terminal * tau * std::log(std::cosh(1.0 / tau)), 0.02);
+  EXPECT_NEAR(-2.0 - tool_place(dive).y, terminal * tau * std::log(std::cosh(1.0 / tau)), 0.02);
   dive.run(10.0);
   // On the floor, by the radius of a ball of a litre.
-  EXPECT_NEAR(place(dive).y, -8.0 + std::cbrt(0.75e-3 / kPi), 0.02);
+  EXPECT_NEAR(tool_place(dive).y, -8.0 + std::cbrt(0.75e-3 / kPi), 0.02);
   EXPECT_LT(glm::length(dive.state().objects()[0].motion.velocity_m_s), 0.02);
 }
 
@@ -53,14 +53,14 @@ TEST(SceneThing, ARackedOneStaysAndAGripperThatClosesTakesItsWeight) {
       thing_text("[0, -10, -0.5]", "mass_kg = 1.5, volume_l = 0.5, racked = true");
   TestDive dive = dive_of(text);
   dive.run(3.0);
-  EXPECT_EQ(place(dive), Vec3(0.0, -10.0, -0.5));
+  EXPECT_EQ(tool_place(dive), Vec3(0.0, -10.0, -0.5));
   EXPECT_EQ(dive.state().things()[0].holder, 0u);
   grip(dive, "rov/grip", GripChoice::kClose);
   dive.run(25.0);
   EXPECT_EQ(dive.state().things()[0].holder, 1u);
   // It hangs in the gripper, its weight in water pulls, and the ROV still holds its depth.
   const Motion at = dive.world->things().grip_motion(0, dive.world->humans(), dive.state());
-  EXPECT_LT(glm::distance(place(dive), at.pose.position_m), 1e-9);
+  EXPECT_LT(glm::distance(tool_place(dive), at.pose.position_m), 1e-9);
   EXPECT_NEAR(dive.state().grips()[0].load_n, (1.5 - 0.514) * 9.80665, 0.6);
   EXPECT_NEAR(dive.pose().position_m.y, -10.0, 0.1);
   const GripReading told =
@@ -71,7 +71,7 @@ TEST(SceneThing, ARackedOneStaysAndAGripperThatClosesTakesItsWeight) {
   dive.run(2.0);
   EXPECT_EQ(dive.state().things()[0].holder, 0u);
   EXPECT_EQ(dive.state().grips()[0].drops, 1u);
-  EXPECT_LT(place(dive).y, -10.5);
+  EXPECT_LT(tool_place(dive).y, -10.5);
 }
 
 TEST(SceneThing, AGrabKeepsTheMomentumOfBoth) {
@@ -115,10 +115,11 @@ TEST(SceneThing, ADiversHandTakesWhatTheGripperHoldsOut) {
   ASSERT_NE(dive.state().things()[0].holder, 0u);
   const std::size_t holder = dive.state().things()[0].holder - 1;
   EXPECT_EQ(dive.world->things().grips()[holder].sort, OwnerSort::kDiver);
-  EXPECT_LT(glm::distance(place(dive), dive.world->things()
-                                           .grip_motion(holder, dive.world->humans(), dive.state())
-                                           .pose.position_m),
-            1e-9);
+  EXPECT_LT(
+      glm::distance(tool_place(dive), dive.world->things()
+                                          .grip_motion(holder, dive.world->humans(), dive.state())
+                                          .pose.position_m),
+      1e-9);
   EXPECT_EQ(dive.state().grips()[0].drops + dive.state().grips()[1].drops, 0u);
 }
 
