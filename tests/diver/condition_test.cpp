@@ -73,7 +73,7 @@ TEST(Hypoxia, AHeldBreathSpendsExactlyWhatItHolds) {
 
 TEST(Hypoxia, ABreathHeldFromDepthFaintsNearTheSurface) {
   HypoxiaState deep = rested(at(1520.0));  // 10 m
-  for (int i = 0; i < 240 * 170; ++i) step_hypoxia(at(1520.0, 0.21, 0.0), 1.0 / 240.0, deep);
+  for (int i = 0; i < 240 * 190; ++i) step_hypoxia(at(1520.0, 0.21, 0.0), 1.0 / 240.0, deep);
   EXPECT_LT(deep.dose, 0.2);
   HypoxiaState up = deep;
   for (int i = 0; i < 240 * 20; ++i) step_hypoxia(at(1520.0, 0.21, 0.0), 1.0 / 240.0, deep);
