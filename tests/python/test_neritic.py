@@ -169,6 +169,27 @@ class Worlds(unittest.TestCase):
             with self.assertRaises(neritic.BadInput):
                 call()
 
+    def test_grips_and_regulators_do_what_they_are_told(self):
+        with neritic.open(str(ROOT / "assets/experiments/team/tool.toml")) as world:
+            grip = world.tick(24)["rov/gripper"]
+            self.assertEqual(grip.held, 0)
+            world["tool"].pose(grip.position, hold=0.05)
+            world["rov"].grip("close")
+            grip = world.tick(120)["rov/gripper"]
+            self.assertEqual((grip.held, grip.grabs, grip.drops), (1, 1, 0))
+            world["rov"].grip("open")
+            self.assertEqual(world.tick(24)["rov/gripper"].drops, 1)
+            with self.assertRaisesRegex(neritic.BadInput, "accepted: auto, open, close"):
+                world["rov"].grip("hold")
+            with self.assertRaisesRegex(neritic.BadInput, "regulator"):
+                world["diver"].regulator("own")
+        with neritic.open(str(ROOT / "assets/experiments/team/buddies.toml")) as world:
+            world["low"].regulator("donor", "flows")
+            supply = world.tick(480)["low/supply"]
+            self.assertEqual(supply.donor, 2)
+            self.assertGreater(supply.taken_l, 0.0)
+            self.assertGreater(supply.flow_l_min, 500.0)
+
     def test_an_asynchronous_iterator_ticks(self):
         async def run():
             world = neritic.open(MISSION, seed=1)

@@ -17,7 +17,7 @@ class Controller:
             return {}
         ahead = np.array(grip.position) - rov
         if self.told.get("delivered"):
-            self._grip(0)
+            self._grip("auto")
             away = rov - diver
             away[2] = 0.0
             self.left = rov + 1.5 * away / max(float(np.linalg.norm(away)), 1e-9) if self.left is None else self.left
@@ -27,7 +27,7 @@ class Controller:
             target, near = np.array([self.told[f"hand_{w}"] for w in ("east", "north", "up")]), self.s["slow_m_s"]
         else:
             target, near = tool, 0.2
-        self._grip(2)
+        self._grip("close")
         line = target - rov
         self.yaw = math.atan2(line[1], line[0])
         wanted = target - np.array([0.45 * math.cos(self.yaw), 0.45 * math.sin(self.yaw), ahead[2]])
@@ -45,7 +45,7 @@ class Controller:
 
     def _grip(self, choice):
         if choice != self.asked:
-            self.rov.command("grip", [choice])
+            self.rov.grip(choice)
             self.asked = choice
 
     def _round(self, diver, at, wanted, clear=1.8):

@@ -17,7 +17,7 @@ class Controller:
         self.unfed += 0.0 if supply.fed else dt
         self.shared += dt if supply.donor > 0 and supply.fed else 0.0
         if not self.asked and (bar <= self.s["share_bar"] or self.unfed >= self.s["reaction_s"]):
-            self.world["low"].command("regulator", [2, 0])
+            self.world["low"].regulator("donor")
             self.asked = True
         return {"bar": bar, "unfed_s": self.unfed, "shared_s": self.shared, "taken_l": supply.taken_l,
                 "saturation": condition.saturation, "lost": float(condition.lost > 0), "apart_m": supply.donor_m}

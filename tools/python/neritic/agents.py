@@ -14,6 +14,12 @@ if TYPE_CHECKING:
     from .world import World
 
 
+def _choice(name: str, what: str, word: str, words: Sequence[str]) -> int:
+    if word not in words:
+        raise BadInput(f"{name}: {what}: found {word!r}; accepted: {', '.join(words)}")
+    return list(words).index(word)
+
+
 class Agent:
     """A vehicle, a diver or an object of the scene. A command holds until the next one, until
     release(), or, with hold > 0, until so many seconds passed without one."""
@@ -51,6 +57,11 @@ class Agent:
         """A command by its name and numbers, as the methods below send it."""
         self._world._core.command(self.name, kind, np.asarray(values, np.float64).ravel(), hold,
                                   self._world.source)
+
+    def grip(self, choice: str) -> None:
+        """Its gripper or hands: "close" holds what comes into reach, "open" lets go, "auto" keeps what it has
+        (hands take what a gripper holds out). Readings of NAME/gripper tell."""
+        self.command("grip", [_choice(self.name, "grip", choice, ("auto", "open", "close"))])
 
     def release(self) -> None:
         """Gives the agent back to what the scene chose: its mission, its autopilot, its devices."""
@@ -124,6 +135,13 @@ class Diver(Agent):
     def gas(self, tank: int) -> None:
         """Breathe from that tank; 0 is the first."""
         self.command("gas", [tank])
+
+
+    def regulator(self, supply: str = "auto", flow: str = "auto") -> None:
+        """What it breathes ("own" tanks, the "donor"'s, "auto": the donor's once nothing else comes), and whether
+        its regulator "flows" freely, "holds", or "auto": as the scene has it. Readings of NAME/supply tell."""
+        self.command("regulator", [_choice(self.name, "supply", supply, ("auto", "own", "donor")),
+                                   _choice(self.name, "flow", flow, ("auto", "flows", "holds"))])
 
 
 class TrackedObject(Agent):
