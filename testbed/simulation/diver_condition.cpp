@@ -121,8 +121,11 @@ double drawn_tolerance(std::uint64_t seed, std::size_t human) {
 
 void start_condition(const PhysicsHuman& human, PhysicsState& state, const HumanPhysics& start) {
   if (!human.condition) return;
-  state.conditions()[human.condition->place] =
-      diver::rested(human.condition->settings, inputs_of(human, nullptr, 0.0, start));
+  // Put there from the surface this moment, where it breathed air.
+  diver::ConditionInputs in = inputs_of(human, nullptr, 0.0, start);
+  in.breath.inspired_share = diver::kAir.oxygen;
+  in.breath.ambient_pa = human.body.surface_pa;
+  state.conditions()[human.condition->place] = diver::rested(human.condition->settings, in);
 }
 
 Ability ability_of(const PhysicsHuman& human, const PhysicsState& before) {

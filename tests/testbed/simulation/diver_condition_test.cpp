@@ -133,18 +133,16 @@ struct Buddies {
   explicit Buddies(double apart_m,
                    const std::string& regulator =
                        "regulator = { donor = \"buddy\", hose_m = 1.2, reaction_s = 3 }\n")
-      : dive(dive_of(
-            kStillWater +
-            named(
-                diver_text(
-                    std::string(kProne) + "position_m = [0, -12, 0]\n" + regulator,
-                    files.file(
-                        "low.toml",
-                        "tanks = [ { pressure_bar = 9, oxygen = 0.32 } ]\ngas_switches = false\n")),
-                "low") +
-            named(diver_text(std::string(kProne) + "position_m = [" + std::to_string(apart_m) +
-                             ", -12, 0]\n"),
-                  "buddy"))) {}
+      : dive(
+            dive_of(kStillWater +
+                    named(diver_text(std::string(kProne) + "position_m = [0, -12, 0]\n" + regulator,
+                                     files.file("low.toml",
+                                                "tanks = [ { volume_l = 1, pressure_bar = 9, "
+                                                "oxygen = 0.32 } ]\ngas_switches = false\n")),
+                          "low") +
+                    named(diver_text(std::string(kProne) + "position_m = [" +
+                                     std::to_string(apart_m) + ", -12, 0]\n"),
+                          "buddy"))) {}
   const HumanPhysics& low() const { return dive.state().humans()[0]; }
   const HumanPhysics& buddy() const { return dive.state().humans()[1]; }
 };
