@@ -48,7 +48,8 @@ render::LeastDrawn least_drawn(const sonar::Head& head, const scene::Sonar& sona
   const double coarser = std::max(1.0, 1.0 / pixels_per_cell);
   // Of a beam's width at half power, where a pattern says it; else of the beams' distance.
   double beam_rad = head.samples_per_beam * grid.azimuth_step_rad();
-  if (const auto& pattern = sonar.terms.beam.azimuth)
+  if (const auto& pattern = sonar.terms.beam.azimuth;
+      pattern && pattern->shape != scene::BeamShape::kTable)
     beam_rad = std::max(beam_rad, pattern->half_power_rad);
   const double columns =
       std::clamp(cone ? kMostColumns : kPartOfBeam * beam_rad / (coarser * grid.azimuth_step_rad()),
