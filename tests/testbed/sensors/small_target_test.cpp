@@ -155,7 +155,7 @@ TEST(SmallTargetPlaces, NeighboursGrowNoFartherThanToEachOther) {
   render::keep_apart(upright);
   EXPECT_LE(upright[0].high_rad, upright[1].low_rad + 1e-12);
   EXPECT_GE(upright[0].high_rad, upright[0].own_high_rad);
-  EXPECT_EQ(upright[1].high_rad, 0.06);
+  EXPECT_DOUBLE_EQ(upright[1].high_rad, 0.06);
   render::DrawnPlace level[] = {place(0.0, 0.0), place(0.01, 0.0)};
   render::keep_apart(level);
   EXPECT_LE(level[0].half_wide_rad + level[1].half_wide_rad, 0.01 + 1e-12);
