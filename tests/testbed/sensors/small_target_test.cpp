@@ -11,6 +11,7 @@
 
 namespace neritic::testbed {
 namespace {
+namespace small {
 
 constexpr double kRadius_m = 0.005, kNearest_m = 7.0, kApart_m = 0.1, kMargin_m = 0.4;
 constexpr int kPings = 5, kAPing = 12, kPlaces = kPings * kAPing;
@@ -167,5 +168,6 @@ TEST(SmallTargetPlaces, NeighboursGrowNoFartherThanToEachOther) {
   }
 }
 
+}  // namespace small
 }  // namespace
 }  // namespace neritic::testbed
