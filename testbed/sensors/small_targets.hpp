@@ -11,9 +11,8 @@
 
 namespace neritic::testbed {
 
-// The extent at which a target is met by some ninety samples, no matter where it lies: a third of a
-// beam wide at most (but a column) and a quarter of the aperture high. pixels_per_cell: of the
-// G-buffer, linear.
+// The extent that a target is met by some forty samples at, no matter where it lies: a third of a
+// beam wide at most and a quarter of the aperture high. pixels_per_cell: of the G-buffer, linear.
 render::LeastDrawn least_drawn(const sonar::Head& head, const scene::Sonar& sonar,
                                double pixels_per_cell);
 
