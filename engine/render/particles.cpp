@@ -26,6 +26,28 @@ std::vector<WorldParticle> snow_around(const scene::Snow& snow, std::uint64_t se
   return out;
 }
 
+namespace {
+
+// Pixels that a metre takes at one metre ahead, in the finest of a set's views.
+double pixels_at_a_metre(const ViewSet& views) {
+  double most = 0.0;
+  for (const ViewDesc& view : views.views) {
+    const FrustumTangents& t = view.tangents;
+    most = std::max({most, views.width / (t.right - t.left), views.height / (t.top - t.bottom)});
+  }
+  return most;
+}
+
+// Whether a grain, lit as the water about it is, changes a pixel by less than half a level of 255:
+// its soft spot has twice the light of its middle spread over a disk of 0.75 pixels at least
+// (shaders/particles.vert).
+bool fades_away(const WorldParticle& grain, double distance_m, double pixels) {
+  const double own = grain.radius_m * pixels / std::max(distance_m, 1e-3);
+  return 2.0 * own * own / (own * own + 0.56) * grain.opacity < 0.003;
+}
+
+}  // namespace
+
 bool has_particles(const scene::Scene& scene) {
   return scene.water &&
          (scene.water->snow || !scene.water->bubbles.empty() || !scene.water->silt.empty());
@@ -50,6 +72,9 @@ ViewParticles view_particles(const scene::MotionSource& motion, SnowField& field
   for (std::size_t i = 0; i < water.silt.size(); ++i)
     add_silt(motion, water.silt[i], i, seed, time_s, all);
   const SphereCulling culling(views);
+  // Before a lamp a grain may be far brighter than the water.
+  const bool dim = motion.scene().lamps.empty() && motion.scene().model_lights.empty();
+  const double pixels = pixels_at_a_metre(views);
   struct Key {
     double distance2_m2;
     std::uint32_t index;
@@ -59,6 +84,8 @@ ViewParticles view_particles(const scene::MotionSource& motion, SnowField& field
   seen.reserve(all.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) {
     const Vec3 at = all[i].position_m - origin;
+    if (dim && all[i].kind == shared::kParticleSnow && fades_away(all[i], glm::length(at), pixels))
+      continue;
     if (all[i].opacity > 0.0 && culling.may_see(at, all[i].radius_m + kSpotRoom_m))
       seen.push_back({glm::dot(at, at), i, all[i].kind == shared::kParticleBubble});
   }
