@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 #include <tuple>
 
@@ -100,13 +101,19 @@ class DrawListBuilder {
   void add_group(std::uint32_t g) {
     const GpuPrimitive& primitive = gpu_scene_.groups()[g].primitive;
     if (primitive.index_count == 0) return;
-    std::vector<Seen> seen = seen_of(g);
     // Instances that share vertices and winding follow each other, front to back, however many
     // draws they become: the order decides between equal depths.
-    std::stable_sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) {
+    const std::vector<Seen> unsorted = seen_of(g);
+    std::vector<std::uint32_t> order(unsorted.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::ranges::stable_sort(order, [&](std::uint32_t i, std::uint32_t k) {
+      const Seen &a = unsorted[i], &b = unsorted[k];
       return std::tuple(a.deformed, a.mirrored, a.level, a.order_m) <
              std::tuple(b.deformed, b.mirrored, b.level, b.order_m);
     });
+    std::vector<Seen> seen;
+    seen.reserve(order.size());
+    for (const std::uint32_t k : order) seen.push_back(unsorted[k]);
     const GpuMaterial& material = gpu_scene_.materials()[primitive.material];
     const bool clusters = options_.clusters && !primitive.clusters.empty() &&
                           (material.blend || seen.size() <= kMostSplitInstances);
@@ -128,6 +135,7 @@ class DrawListBuilder {
     const GpuPrimitive& primitive = group.primitive;
     const bool blend = gpu_scene_.materials()[primitive.material].blend;
     std::vector<Seen> seen;
+    School school;
     for (const Appearance& a : group.appearances) {
       const std::uint16_t class_id = scene_.objects[a.object].class_id;
       if (class_id != 0 && class_id == options_.without_class) continue;
@@ -137,8 +145,7 @@ class DrawListBuilder {
                               : nullptr;
       const std::uint32_t deformed = job ? job->push.first_out : kNone;
       const bool skinned = primitive.first_skin != kNone && job;
-      Mat4 m = world_from_appearance(scene_, state_.world_from_object[a.object],
-                                     state_.poses[a.object], a, skinned, state_.flock[a.object]);
+      Mat4 m = world_from(a, skinned, school);
       m[3] -= Vec4(origin_, 0.0);
       // The rest shape bounds nothing that deforms: without a bound of its own such is drawn.
       const bool bounded = !job || job->radius_m >= 0.0;
@@ -155,7 +162,9 @@ class DrawListBuilder {
       std::uint32_t level = 0;
       if (options_.mesh_error_px > 0.0 && bounded && !blend) {
         const double px_m = pixels_a_metre(center, own_radius_m * stretch);
-        if (2.0 * own_radius_m * stretch * px_m < 0.5 * options_.mesh_error_px) continue;
+        if (2.0 * own_radius_m * stretch * px_m <
+            std::max(0.5 * options_.mesh_error_px, options_.least_px))
+          continue;
         while (level < primitive.levels.size() &&
                primitive.levels[level].error_m * stretch * px_m <= options_.mesh_error_px)
           ++level;
@@ -173,6 +182,27 @@ class DrawListBuilder {
           {&a, m, deformed, level, glm::determinant(glm::dmat3(m)) < 0.0, hides, order_m, larger});
     }
     return seen;
+  }
+
+  // What the copies of a school share.
+  struct School {
+    std::uint32_t object = kNone, node = kNone;
+    Mat4 world_from_object{1.0}, copy_from_primitive{1.0};
+  };
+
+  Mat4 world_from(const Appearance& a, bool skinned, School& school) const {
+    const std::vector<Mat4>& flock = state_.flock[a.object];
+    if (flock.empty() || a.copy < 0 || a.node_instance >= 0)
+      return world_from_appearance(scene_, state_.world_from_object[a.object],
+                                   state_.poses[a.object], a, skinned, flock);
+    if (school.object != a.object || school.node != a.node) {
+      Appearance first = a;
+      first.copy = -1;
+      school = {a.object, a.node, to_matrix(state_.world_from_object[a.object]),
+                world_from_appearance(scene_, Pose{}, state_.poses[a.object], first, skinned)};
+    }
+    return school.world_from_object * flock[static_cast<std::size_t>(a.copy)] *
+           school.copy_from_primitive;
   }
 
   // Widens the list's heights by a box round a centre; a ball's box turns like any other.

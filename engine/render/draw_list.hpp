@@ -57,6 +57,8 @@ struct DrawListOptions {
   // Meshes may be coarser where that moves nothing by more than so many pixels (see
   // scene::MeshLevel), and what is smaller than half of it is left out; 0: all are whole.
   double mesh_error_px = 0.0;
+  // With mesh_error_px: what is narrower than so many pixels is left out too.
+  double least_px = 0.0;
   // How many vertices of each FrameState::deforms are drawn, raised to what this list draws.
   // nullptr: nobody asks.
   std::vector<std::uint32_t>* deform_need = nullptr;

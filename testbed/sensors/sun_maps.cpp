@@ -10,6 +10,10 @@
 namespace neritic::testbed {
 namespace {
 
+// Texels across below which a thing throws no shadow into a map: the rings of taps blur it away,
+// and a school of fish would be drawn once more a map.
+constexpr double kLeastCaster_px = 3.0;
+
 // Hash of what a layer shows; never 0.
 std::uint64_t content_of(std::uint64_t still, const render::ViewSet& set, double mesh_error_px) {
   const render::ViewDesc& view = set.views.front();
@@ -46,8 +50,10 @@ Result<graph::ImageHandle> SunMaps::declare(const FrameParts& frame, const std::
                             .array_view = true}));
   }
   const auto draws = [&](std::span<const std::uint8_t> objects) {
-    return render::DrawListOptions{
-        .objects = objects, .mesh_error_px = work.mesh_error_px, .deform_need = &frame.deform_need};
+    return render::DrawListOptions{.objects = objects,
+                                   .mesh_error_px = work.mesh_error_px,
+                                   .least_px = work.mesh_error_px > 0.0 ? kLeastCaster_px : 0.0,
+                                   .deform_need = &frame.deform_need};
   };
   FrameLight& light = frame.light;
   if (!light.still_known) {
