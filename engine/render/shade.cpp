@@ -89,13 +89,12 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
   // Rows that see no sea are spared its waves: a CPU driver computes them for every pixel.
   std::vector<ShadeRows> rows{{0, groups(gbuffer.height), waves.has_value(), nullptr}};
   if (waves) rows = rows_of_sea(views, lighting, *waves, groups(gbuffer.height));
-  const bool tiled = gbuffer.layers == 1;
+  // With waves rows alone are told apart: lists with them as well crash Mesa 22.3's lavapipe.
+  const bool tiled = gbuffer.layers == 1 && !waves;
   graph::BufferHandle tiles;
   if (tiled) {
-    shared::ShadeTilesPush push{groups(gbuffer.width), groups(gbuffer.height), 0, 0};
-    for (const ShadeRows& part : rows)
-      if (part.sea) push.sea_first = part.first, push.sea_end = part.end;
-    NERITIC_TRY(tiles, declare_shade_tiles(graph, prefix, gbuffer, push));
+    NERITIC_TRY(tiles, declare_shade_tiles(graph, prefix, gbuffer,
+                                           {groups(gbuffer.width), groups(gbuffer.height), 0, 0}));
     rows = lists_of(rows);
   }
   for (ShadeRows& part : rows) {
