@@ -113,12 +113,11 @@ TEST(RenderCommand, RunsHaveSeedsAndFoldersOfTheirOwnAndEndInATable) {
              (test::source_dir() / "assets/vehicles/bluerov2_heavy_dynamics.toml").string() +
              "\"\n[vehicles.mission]\nwaypoints = [{ position_m = [0.5, -5, 0] }]\n"
              "[[cameras]]\nname = \"eye\"\nwidth = 16\nheight = 16\n";
-  const Outcome outcome =
-      neritic("render " + (folder / "scene.toml").string() +
-                  " --only trajectory --time 1 --seed 7" + " --runs 2 --out " +
-                  (folder / "out").string() + " 2>&1 1>" + (folder / "table").string() + " #",
-              "");
-  EXPECT_EQ(outcome.status, 0) << outcome.said;
+  const std::string command =
+      NERITIC_BINARY_DIR "/tools/neritic render " + (folder / "scene.toml").string() +
+      " --only trajectory --time 1 --seed 7 --runs 2 --out " + (folder / "out").string() + " >" +
+      (folder / "table").string() + " 2>" + (folder / "stderr").string();
+  EXPECT_EQ(std::system(command.c_str()), 0) << read_text(folder / "stderr").value();
   for (const char* run : {"run_0000", "run_0001"})
     EXPECT_TRUE(fs::exists(folder / "out" / run / "trajectory.csv")) << run;
   const std::string table = read_text(folder / "table").value();

@@ -1,4 +1,4 @@
-"""Baseline: drives the gripper to the tool, closes it, drives it slowly to the diver's hand, and backs off once the diver has it.
+"""Baseline: drives the gripper to the tool, closes it, comes slowly from the side of the diver's right hand, and backs off once the diver has it.
 Near its goal it comes no faster than slow_m_s, so that the hand can take what it brings."""
 import math
 
@@ -28,10 +28,18 @@ class Controller:
         else:
             target, near = tool, 0.2
         self._grip("close")
+<<<<<<< HEAD
+=======
+        side = self._right_of_diver()
+        aside = rov - diver
+        aside[2] = 0.0
+        if self.told.get("held") and aside @ side < 0.6 * np.linalg.norm(aside):
+            target = target + 1.6 * side  # first to the side where the hand is
+>>>>>>> origin/main
         line = target - rov
         self.yaw = math.atan2(line[1], line[0])
         wanted = target - np.array([0.45 * math.cos(self.yaw), 0.45 * math.sin(self.yaw), ahead[2]])
-        wanted = wanted if self.told.get("held") else self._round(diver, self.goal, wanted)
+        wanted = self._round(diver, self.goal, wanted)
         # The goal moves to where it is wanted, fast from afar, slowly near.
         self.goal = rov if self.goal is None else self.goal
         off = wanted - self.goal
@@ -42,6 +50,11 @@ class Controller:
         self.goal = self.goal + moves
         self.rov.goto(*self.goal, self.yaw, velocity=moves * 20.0)
         return {}
+
+    def _right_of_diver(self):
+        x, y, z, w = self.world.truth("diver").orientation
+        right = -np.array([2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 0.0])
+        return right / max(float(np.linalg.norm(right)), 1e-9)
 
     def _grip(self, choice):
         if choice != self.asked:
@@ -56,7 +69,7 @@ class Controller:
         along = float((diver - at) @ way / (way @ way))
         off = at + along * way - diver
         off[2] = 0.0
-        if not 0 < along < 1 or np.linalg.norm(off) >= clear:
+        if not 0 < along < 1 or np.linalg.norm(off) >= 0.7 * clear:
             return wanted
         off = off if np.linalg.norm(off) > 0.05 else np.array([-way[1], way[0], 0.0])
         return diver + 1.3 * clear * off / float(np.linalg.norm(off))

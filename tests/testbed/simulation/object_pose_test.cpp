@@ -169,7 +169,7 @@ TEST(ObjectPose, ItIsNotSolidAndScenesThatMeanOtherwiseAreRefused) {
     ASSERT_FALSE(scene.ok()) << keys;
     EXPECT_NE(scene.error().message.find(what), std::string::npos) << scene.error().message;
   };
-  refused("inputs = { pose = \"a\" }\ncollision = true\n", "a clip or inputs is not solid");
+  refused("inputs = { pose = \"a\" }\ncollision = true\n", "a clip, inputs or thing is not solid");
   refused("inputs = { wrench = \"a\" }\n", "wrench");
   refused("inputs = { pose = \"recording\" }\n", "recording");
   refused("inputs = {}\n", "a table with the key pose");
