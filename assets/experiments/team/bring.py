@@ -28,14 +28,11 @@ class Controller:
         else:
             target, near = tool, 0.2
         self._grip("close")
-<<<<<<< HEAD
-=======
         side = self._right_of_diver()
         aside = rov - diver
         aside[2] = 0.0
         if self.told.get("held") and aside @ side < 0.6 * np.linalg.norm(aside):
             target = target + 1.6 * side  # first to the side where the hand is
->>>>>>> origin/main
         line = target - rov
         self.yaw = math.atan2(line[1], line[0])
         wanted = target - np.array([0.45 * math.cos(self.yaw), 0.45 * math.sin(self.yaw), ahead[2]])

@@ -15,11 +15,7 @@ namespace small {
 
 constexpr double kRadius_m = 0.005, kNearest_m = 7.0, kApart_m = 0.1, kMargin_m = 0.4;
 constexpr int kPings = 5, kAPing = 12, kPlaces = kPings * kAPing;
-<<<<<<< HEAD
-constexpr double kAperture_rad = radians(24.0);
-=======
 constexpr double kAperture_rad = radians(12.0);
->>>>>>> origin/main
 constexpr double kSound_m_s = 1500.0;
 
 // A device of assets/sensors over 7 to 13 m with its own bins, beams and pattern, at the level that
