@@ -105,10 +105,10 @@ TEST(SceneThing, ADiversHandTakesWhatTheGripperHoldsOut) {
   TestDive dive = dive_of(
       kStillWater +
       diver_text(std::string(kProne) + "position_m = [0, -10, 0]\nhands = { reach_m = 0.15 }\n") +
-      rov_text(std::string("position_m = [0.25, -10.2, -1.38]\nyaw_deg = 180\nmission = { hold = "
+      rov_text(std::string("position_m = [0.25, -10.2, -1.15]\nyaw_deg = 180\nmission = { hold = "
                            "\"station\" }\n") +
                kGripper) +
-      thing_text("[0.25, -10.2, -0.93]", "mass_kg = 0.6, volume_l = 0.5"));
+      thing_text("[0.25, -10.2, -0.7]", "mass_kg = 0.6, volume_l = 0.5"));
   grip(dive, "rov/grip", GripChoice::kClose);
   dive.run(10.0);
   EXPECT_EQ(dive.state().things()[0].handovers, 1u);
