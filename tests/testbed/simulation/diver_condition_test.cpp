@@ -152,7 +152,7 @@ TEST(SceneRegulator, OneOutOfGasBreathesTheDonorsTankAndTheCountsAgree) {
   const double before = all_moles(two.low()) + all_moles(two.buddy());
   const double buddy_before = all_moles(two.buddy());
   double shared_s = 0.0, longest_unfed_s = 0.0;
-  two.dive.run(60.0, [&] {
+  two.dive.run(20.0, [&] {
     if (shared_s == 0.0 && two.dive.state().regulators()[0].donor == 2)
       shared_s = two.dive.time_s();
     longest_unfed_s = std::max(longest_unfed_s, two.low().human.life.lungs.unfed_s);
@@ -160,7 +160,7 @@ TEST(SceneRegulator, OneOutOfGasBreathesTheDonorsTankAndTheCountsAgree) {
   const RegulatorState& regulator = two.dive.state().regulators()[0];
   EXPECT_GE(shared_s, 3.0);
   EXPECT_EQ(regulator.donor, 2u);
-  EXPECT_GT(regulator.taken_moles, 1.0);
+  EXPECT_GT(regulator.taken_moles, 0.1);
   EXPECT_EQ(two.low().human.life.lungs.unfed_s, 0.0);  // fed again
   EXPECT_LT(longest_unfed_s, 20.0);
   const double breathed =
