@@ -70,10 +70,10 @@ TEST_F(DiveMarkers, WhatCannotBeIsRefusedInOneLine) {
   };
   EXPECT_EQ(refused("--realtime --record " + file("a.mcap") + " --markers 0"),
             "neritic: --markers: found 0; accepted: a port, 1 to 65535, or udp://ADDRESS:PORT\n");
-  EXPECT_EQ(refused("--markers 47131"),
+  EXPECT_EQ(refused("--markers 47149"),
             "neritic: --markers: found a run in simulated time; accepted: --realtime, or a "
             "window\n");
-  EXPECT_NE(refused("--realtime --markers 47131").find("--markers: found no --record, and no Lab "),
+  EXPECT_NE(refused("--realtime --markers 47149").find("--markers: found no --record, and no Lab "),
             std::string::npos);
 }
 
