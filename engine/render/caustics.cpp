@@ -54,9 +54,9 @@ Result<graph::ImageHandle> Renderer::declare_caustics(graph::FrameGraph& graph,
       [&](graph::PassBuilder& builder, Data& data) {
         data.sums = thrown.sums;
         builder.read(thrown.sums, graph::Access::kStorageReadCompute);
-        data.out = builder.write(
-            builder.create_image(name, {kHdrFormat, n, n, shared::kCausticLayers}),
-            graph::Access::kStorageWriteCompute);
+        data.out =
+            builder.write(builder.create_image(name, {kHdrFormat, n, n, shared::kCausticLayers}),
+                          graph::Access::kStorageWriteCompute);
       },
       [this, &params, n](const Data& data, graph::PassContext& context) {
         context.commands.bind_pipeline(caustics_resolve_);

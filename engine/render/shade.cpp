@@ -89,8 +89,8 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
   // Rows that see no sea are spared its waves: a CPU driver computes them for every pixel.
   std::vector<ShadeRows> rows{{0, groups(gbuffer.height), waves.has_value(), nullptr}};
   if (waves) rows = rows_of_sea(views, lighting, *waves, groups(gbuffer.height));
-  // With waves rows alone are told apart: lists beside them crashed lavapipe (Mesa 22.3), and why is
-  // not known.
+  // With waves rows alone are told apart: lists beside them crashed lavapipe (Mesa 22.3), and why
+  // is not known.
   const bool tiled = gbuffer.layers == 1 && !waves;
   graph::BufferHandle tiles;
   if (tiled) {

@@ -18,8 +18,8 @@ struct CausticsParams {
   uint count;
   uint texels;  // a side of the tile
   float tile_m;
-  float first_m;    // depth of the first level
-  float step;       // depth of a level over that of the one before
+  float first_m;     // depth of the first level
+  float step;        // depth of a level over that of the one before
   uint first_level;  // levels that something lies at: the others are even light
   uint end_level;
   vec3 travel_air;  // unit, the way sunlight travels above the surface
@@ -29,8 +29,8 @@ struct CausticsParams {
 // Depths of the levels of pictures, m: kCausticFirst_m kCausticStep^i. Between them the picture is
 // blended, beyond them the last stays.
 NERITIC_CONST uint kCausticLevels = 8;
-// The image's layers: four levels each, of which the last is the next layer's first, so that a place
-// between two levels is one sample. Level i is channel i % 3 of layer i / 3.
+// The image's layers: four levels each, of which the last is the next layer's first, so that a
+// place between two levels is one sample. Level i is channel i % 3 of layer i / 3.
 NERITIC_CONST uint kCausticLayers = 3;
 NERITIC_CONST uint kCausticLayerStep = 3;
 NERITIC_CONST float kCausticFirst_m = 0.4f;

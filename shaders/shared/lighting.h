@@ -105,7 +105,7 @@ NERITIC_CONST uint kSpecTerms = 0;
 NERITIC_CONST uint kSpecLamps = 1;
 NERITIC_CONST uint kSpecSeenStep = 2;     // pixels a side to one of the visibility image
 NERITIC_CONST uint kSpecGlowSamples = 3;  // of a lamp's beam along a sight
-NERITIC_CONST uint kSpecSeaSeen = 4;  // with kLightWaves: whether these rows can see the surface
+NERITIC_CONST uint kSpecSeaSeen = 4;   // with kLightWaves: whether these rows can see the surface
 NERITIC_CONST uint kSpecTiled = 6;     // workgroups take their tiles from a list
 NERITIC_CONST uint kSpecSurfaces = 7;  // 0: no pixel of these tiles shows a solid
 // Push constant of the shade pass: the first row of workgroups, or where its list of tiles begins.

@@ -69,7 +69,8 @@ void Markers::take(net::Bytes bytes, bool cut, std::int64_t stamp_ns, std::int64
              bytes.size(), kMostText);
     return;
   }
-  const std::string text = printable({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, kMostText);
+  const std::string text =
+      printable({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, kMostText);
   if (outlet_) outlet_->send(text, waited_ns);
   if (!recording_ || recording_->failed()) return;
   recording::McapOut& out = recording_->out();

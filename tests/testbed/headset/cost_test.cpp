@@ -41,8 +41,8 @@ TEST_F(HeadsetCost, AStereoFrameOfTheDiveTakesLessThan1_5MillisecondsOfOneCore) 
   without_layer();
   without_validation();
   scene::Scene scene = scene::load_scene(test::source_dir() / "assets/scenes/dive.toml").value();
-  // The scene's light, water and stones are left out: with all of it, and the instruments drawn five
-  // times a second of the dive, a frame takes 4.4 ms.
+  // The scene's light, water and stones are left out: with all of it, and the instruments drawn
+  // five times a second of the dive, a frame takes 4.4 ms.
   scene.sun->shadows.reset();
   scene.ambient.reset();
   scene.water->snow.reset();
