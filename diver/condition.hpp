@@ -37,7 +37,7 @@ struct ConditionState {
   HypoxiaState hypoxia;
   ColdState cold;
   double oxygen_dose = 0.0;  // integral of (pO2 / atm)^3.38 over minutes
-  // Of a minute beyond what anybody bears, of carbon dioxide and of narcosis; 1: lost.
+  // Shares of a minute beyond what anybody bears; at 1 consciousness is lost.
   double co2_dose = 0.0, narcosis_dose = 0.0;
   double convulses_s = 0.0;  // more to go
   double slowing = 1.0;      // of reactions and decisions: times as long as when rested

@@ -33,7 +33,7 @@ layout(location = 1) flat out vec3 shape;  // half streak, radius (pixels), opac
 layout(location = 2) flat out vec3 body;   // radiance that arrives from an opaque one, exposed
 layout(location = 3) flat out uvec2 kind;
 layout(location = 4) flat out vec4 flatness;  // distance (m), radius (m), direction of the streak
-// Of a bubble: its short axis on the picture and its height over its width there; the way from the
+// A bubble's short axis on the picture and its height over its width there; the way from the
 // eye; radiances about it (exposed, as they arrive), and what the water before it adds.
 layout(location = 5) flat out vec3 upright;
 layout(location = 6) flat out vec3 along_sight;
@@ -75,8 +75,8 @@ vec3 radiance_of(vec3 at, vec3 to_eye, vec3 albedo) {
   return sum * albedo;
 }
 
-// What a bubble mirrors and lets through: the water about it, the light within Snell's cone, sun
-// and lamp.
+// The light that a bubble mirrors and lets through: from the water about it, Snell's cone, sun and
+// lamp.
 void light_bubble(vec3 at, vec3 along, Sight sight) {
   float depth_m = light.origin_depth_m - at.y;
   vec3 scale = sight.transmittance * light.exposure;

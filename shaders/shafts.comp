@@ -84,7 +84,7 @@ void main() {
       float way_m = -log(max(1.0 - share * reached, 1e-30)) / rate;
       vec3 place = views[layer].eye + direction * (part_m.x + min(way_m, reach_m));
       float lit = caustic_at(place, way_m * length(views[layer].ray_dx) * float(kShaftStep));
-      // What is scattered round a solid fills its shadow, as on surfaces.
+      // Light that is scattered round a solid fills its shadow, as on surfaces.
       if (kCascades > 0u) lit *= 1.0 - core_share(light.origin_depth_m - place.y) * (1.0 - sun_reaches(place));
       sum += lit;
     }

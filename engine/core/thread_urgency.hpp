@@ -8,7 +8,7 @@ enum class ThreadUrgency {
   // Short work at fixed times, such as a step of physics: runs soon after it wakes, also on a
   // machine that is busy (a short slice, Linux 6.12 and later).
   kSoon,
-  // What devices and clients send: soon too, and gives way to steps.
+  // For what devices and clients send: soon too, and it gives way to steps.
   kInput,
 };
 

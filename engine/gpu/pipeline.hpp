@@ -93,7 +93,7 @@ struct GraphicsPipelineDesc {
 };
 // Dynamic state of every graphics pipeline: viewport, scissor, cull mode, front face.
 
-// What the driver made of a description, and what it stands on.
+// A pipeline of the driver, made of a description, with the layouts that it stands on.
 struct MadePipeline {
   MadePipeline() = default;
   MadePipeline(const MadePipeline&) = delete;

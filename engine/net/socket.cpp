@@ -37,7 +37,7 @@ TimeNs wall_ns() {
   return ns_of(time);
 }
 
-// What the kernel says of a datagram; what it does not say stays as it is.
+// Takes what the kernel says of a datagram; the rest stays as it is.
 void read_control(msghdr& message, std::uint64_t& drops, TimeNs& stamp_ns) {
   for (cmsghdr* c = CMSG_FIRSTHDR(&message); c; c = CMSG_NXTHDR(&message, c)) {
     if (c->cmsg_level != SOL_SOCKET) continue;

@@ -184,7 +184,7 @@ class DrawListBuilder {
     return seen;
   }
 
-  // What the copies of a school share.
+  // The copies of a school share this.
   struct School {
     std::uint32_t object = kNone, node = kNone;
     Mat4 world_from_object{1.0}, copy_from_primitive{1.0};

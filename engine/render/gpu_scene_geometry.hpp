@@ -14,7 +14,7 @@ struct GpuSceneGeometry {
   gpu::Buffer positions, surfaces, indices, skin, morphs;
 };
 
-// What is made of a primitive before it is uploaded. Pure; any thread.
+// Makes of a primitive the data that are uploaded. Pure; any thread.
 struct PreparedMesh {
   std::vector<std::uint32_t> indices;  // of its vertices: the mesh, then coarser clusters
   std::vector<ClusterNode> clusters;

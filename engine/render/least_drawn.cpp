@@ -73,7 +73,7 @@ std::vector<Extent> extents(const scene::Scene& scene, const GpuScene& gpu_scene
             eye_from_world * Vec3(m * Vec4(primitive.center_m + sign * primitive.half_m, 1.0));
       }
       for (int k = 0; k < 3; ++k) radius = std::max(radius, glm::length(Vec3(m[k])));
-      // Of a map that shears a length may grow by more than its columns do.
+      // A map that shears may lengthen by more than its columns do.
       const double sheared =
           glm::length(Vec3(m[0])) * glm::length(Vec3(m[1])) * glm::length(Vec3(m[2]));
       const bool turns = std::abs(glm::determinant(glm::dmat3(m))) > 0.999 * sheared;
@@ -110,7 +110,7 @@ std::optional<Growing> growing(const Extent& extent, const LeastDrawn& least, bo
   p.own_half_wide_rad = std::max(0.5 * (wide.high - wide.low) / g.distance_m, 1e-9);
   const double own_high_rad = std::max((high.high - high.low) / g.distance_m, 1e-9);
   const double own_wide_rad = 2.0 * p.own_half_wide_rad;
-  // What is long is met by some of its rows or columns wherever it lies.
+  // Some rows or columns meet a long thing wherever it lies.
   if (own_wide_rad > 2.0 * least.wide_rad || own_high_rad > 2.0 * least.high_rad) return {};
   if (own_wide_rad >= least.wide_rad && own_high_rad >= least.high_rad) return {};
   p.azimuth_rad = std::atan2(middle.x, -middle.z);

@@ -57,7 +57,7 @@ ViewParticles view_particles(const scene::MotionSource& motion, SnowField& field
                              std::uint64_t seed, const ViewSet& views, double time_s,
                              double snow_share) {
   ViewParticles out;
-  // Of bubbles' wobble now, in 256ths of a turn.
+  // The phase of bubbles' wobble now, in 256ths of a turn.
   const double swings = time_s * shared::kWobble_hz;
   const auto swing = static_cast<std::uint32_t>(256.0 * (swings - std::floor(swings)));
   const scene::Water& water = *motion.scene().water;

@@ -88,7 +88,7 @@ Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
   desc.layout.bindings = {{shared::kRasterViews, kUniform}};
   desc.streams = {position_stream(), instance_stream()};
   desc.constants = {{shared::kSpecMultiview, view_mask != 0}};
-  // Of a geometry pass "motion" means that some things are drawn larger than they are.
+  // In a geometry pass "motion" means that some things are drawn larger than they are.
   if (plain && motion) desc.streams.push_back(next_instance_stream(true));
   if (!plain) {
     desc.layout.bindings.push_back({shared::kRasterNextPositions, kStorage});

@@ -93,7 +93,7 @@ struct ShadeInputs {
   std::uint32_t inscatter_samples = 4;   // of a lamp's beam along a sight
 };
 
-// What light shafts come from: the sun's maps and the caustics, either of which may be empty.
+// Inputs of light shafts: the sun's maps and the caustics, either of which may be empty.
 struct ShaftInputs {
   shared::VisibilityParams sun{};
   std::uint32_t cascade_count = 0;

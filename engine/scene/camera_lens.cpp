@@ -76,7 +76,7 @@ static glm::dvec2 into_water(const Port& port, const glm::dvec2& air) {
 static glm::dvec2 into_air(const Port& port, const glm::dvec2& water) {
   const double r = glm::length(water);
   if (port.kind == PortKind::kNone) return water;
-  // What total reflection keeps out lies beyond all pictures.
+  // Directions that total reflection keeps out lie beyond all pictures.
   const double angle = air_angle(port, std::atan(r));
   if (!(angle < radians(89.9))) return r > 0.0 ? water * (1e6 / r) : water;
   return r > 1e-12 ? water * (std::tan(angle) / r) : water;

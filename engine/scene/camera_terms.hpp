@@ -65,7 +65,7 @@ struct Focus {
   std::uint32_t samples = 24;  // that a pixel gathers
 };
 
-// What moves while the shutter is open; rows are read one after another.
+// Blurs what moves while the shutter is open; rows are read one after another.
 struct Shutter {
   double exposure_s = 0.008, readout_s = 0.0;  // of a row; from the first row to the last
   std::uint32_t samples = 8;

@@ -25,7 +25,8 @@ struct LampProfile {
 LampProfile gaussian_profile(double half_intensity_rad);
 // Angles (rad, rising from 0) and shares, linear between.
 LampProfile table_profile(const std::vector<std::pair<double, double>>& rows);
-// Of a cone whose cosine has a smooth step between the two angles (shaders/shared/water.glsl), sr.
+// The solid angle of a cone whose cosine has a smooth step between the two angles
+// (shaders/shared/water.glsl), sr.
 double cone_solid_angle_sr(double inner_rad, double outer_rad);
 
 }  // namespace neritic::scene

@@ -16,7 +16,8 @@ constexpr std::size_t kLeastTriangles = 32, kCoarsest = 6;
 constexpr double kLeastGain = 0.75;
 // A level that errs by more than this share of the mesh's size shows no mesh any more.
 constexpr double kLargestError = 0.25;
-// Of a corner's vertices so many are tried; a whole picture's width of texture weighs so much.
+// The number of a corner's vertices that are tried; the weight of a whole picture's width of
+// texture.
 constexpr std::size_t kMostChoices = 6;
 constexpr double kTexture = 4.0;
 

@@ -14,7 +14,7 @@ namespace neritic::scene {
 
 struct MeshLevel {
   std::vector<std::uint32_t> indices;  // three a triangle, of the primitive's vertices
-  // What the level leaves wrong, metres in the mesh's frame: the surface lies no farther off than
+  // The level's error, metres in the mesh's frame: the surface lies no farther off than
   // this (as the simplifier estimates it), and an edge, between whose ends normals, colours and
   // texture are interpolated, is kEdgeShare times as long.
   double error_m = 0.0;

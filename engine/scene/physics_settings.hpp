@@ -134,7 +134,7 @@ struct SwimPlan {
   bool repeat = false;
 };
 
-// Of a diver: how gas and cold change one who does not notice (diver/condition.hpp).
+// How gas and cold change a diver who does not notice (diver/condition.hpp).
 struct Condition {
   std::vector<std::string> effects;  // empty: all
   bool acts = true;                  // on what the diver does
@@ -142,13 +142,13 @@ struct Condition {
   std::optional<double> oxygen_tolerance;  // absent: drawn from the scene's seed
 };
 
-// Of a diver: a regulator that blows gas off by itself, from at_s until until_s.
+// A diver's regulator that blows gas off by itself, from at_s until until_s.
 struct FreeFlow {
   double at_s = 0.0, until_s = 1e9;
   std::uint64_t tank = 0;  // of the diver's file, from 0
   double area_m2 = 10e-6;  // of the open valve
 };
-// Of a diver: a buddy's second regulator, and own ones that fail.
+// A diver's regulators: a buddy's second one, and own ones that fail.
 struct Regulator {
   std::string donor;  // the diver whose gas this one breathes without any; empty: nobody
   std::uint64_t donor_tank = 0;

@@ -44,41 +44,38 @@ FreeFlow read_free_flow(TableReader& reader) {
 }  // namespace
 
 std::optional<Condition> read_condition(TableReader& parent) {
-  const TomlValue* table = parent.table("condition");
-  if (!table) return std::nullopt;
-  TableReader reader(parent.source(), *table, parent.path("condition"), kConditionKeys);
-  Condition condition;
-  read_effects(reader, condition);
-  condition.acts = reader.flag("acts", condition.acts);
-  condition.water_c = reader.number("water_c", condition.water_c, {-2, 40, false, false, "C"});
-  condition.fat_share = reader.number("fat_share", condition.fat_share, {0.03, 0.6});
-  if (reader.has("oxygen_tolerance"))
-    condition.oxygen_tolerance = reader.number("oxygen_tolerance", 0.0, {-5, 5});
-  if (const Status status = reader.status(); !status.ok()) parent.fail(status.error());
-  return condition;
+  return read_term<Condition>(parent, "condition", kConditionKeys, [](TableReader& reader) {
+    Condition condition;
+    read_effects(reader, condition);
+    condition.acts = reader.flag("acts", condition.acts);
+    condition.water_c = reader.number("water_c", condition.water_c, {-2, 40, false, false, "C"});
+    condition.fat_share = reader.number("fat_share", condition.fat_share, {0.03, 0.6});
+    if (reader.has("oxygen_tolerance"))
+      condition.oxygen_tolerance = reader.number("oxygen_tolerance", 0.0, {-5, 5});
+    return condition;
+  });
 }
 
 std::optional<Regulator> read_regulator(TableReader& parent) {
-  const TomlValue* table = parent.table("regulator");
-  if (!table) return std::nullopt;
-  TableReader reader(parent.source(), *table, parent.path("regulator"), kRegulatorKeys);
-  Regulator regulator;
-  regulator.donor = reader.text("donor", regulator.donor);
-  for (const Key key : {"donor_tank", "hose_m", "reaction_s"})
-    if (regulator.donor.empty() && reader.has(key)) reader.refuse(key, "no such key without donor");
-  regulator.donor_tank = reader.whole("donor_tank", regulator.donor_tank, 0, kLastTank);
-  regulator.hose_m = reader.number("hose_m", regulator.hose_m, {0, 10, true, false, "metres"});
-  regulator.reaction_s =
-      reader.number("reaction_s", regulator.reaction_s, {0, 600, false, false, "seconds"});
-  const auto& flows = reader.tables("free_flow");
-  for (std::size_t i = 0; i < flows.size(); ++i) {
-    TableReader flow(parent.source(), flows[i], fmt::format("{}[{}]", reader.path("free_flow"), i),
-                     kFreeFlowKeys);
-    regulator.free_flows.push_back(read_free_flow(flow));
-    if (const Status status = flow.status(); !status.ok()) reader.fail(status.error());
-  }
-  if (const Status status = reader.status(); !status.ok()) parent.fail(status.error());
-  return regulator;
+  return read_term<Regulator>(parent, "regulator", kRegulatorKeys, [](TableReader& reader) {
+    Regulator regulator;
+    regulator.donor = reader.text("donor", regulator.donor);
+    for (const Key key : {"donor_tank", "hose_m", "reaction_s"})
+      if (regulator.donor.empty() && reader.has(key))
+        reader.refuse(key, "no such key without donor");
+    regulator.donor_tank = reader.whole("donor_tank", regulator.donor_tank, 0, kLastTank);
+    regulator.hose_m = reader.number("hose_m", regulator.hose_m, {0, 10, true, false, "metres"});
+    regulator.reaction_s =
+        reader.number("reaction_s", regulator.reaction_s, {0, 600, false, false, "seconds"});
+    const auto& flows = reader.tables("free_flow");
+    for (std::size_t i = 0; i < flows.size(); ++i) {
+      TableReader flow(reader.source(), flows[i],
+                       fmt::format("{}[{}]", reader.path("free_flow"), i), kFreeFlowKeys);
+      regulator.free_flows.push_back(read_free_flow(flow));
+      if (const Status status = flow.status(); !status.ok()) reader.fail(status.error());
+    }
+    return regulator;
+  });
 }
 
 }  // namespace neritic::scene

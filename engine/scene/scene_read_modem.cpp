@@ -29,38 +29,32 @@ Ranging read_usbl(TableReader& reader) {
 }  // namespace
 
 std::optional<Modem> read_modem(TableReader& parent) {
-  const TomlValue* table = parent.table("modem");
-  if (!table) return std::nullopt;
-  TableReader reader(parent.source(), *table, parent.path("modem"), kModemKeys);
-  Modem modem;
-  modem.position_m =
-      reader.vector3("position_m", modem.position_m, {-100, 100, false, false, "metres"});
-  modem.source_level_db =
-      reader.number("source_level_db", modem.source_level_db, {0, 260, false, false, "decibels"});
-  modem.frequency_hz = reader.number("frequency_hz", modem.frequency_hz, kModemFrequency);
-  modem.bandwidth_hz =
-      reader.number("bandwidth_hz", modem.bandwidth_hz, {1, 1e6, false, false, "hertz"});
-  if (modem.bandwidth_hz > 2.0 * modem.frequency_hz)
-    reader.refuse("bandwidth_hz",
-                  fmt::format("up to twice the frequency, {:g} Hz", 2.0 * modem.frequency_hz));
-  modem.bit_rate_hz =
-      reader.number("bit_rate_hz", modem.bit_rate_hz, {1, 1e6, false, false, "bits a second"});
-  modem.preamble_s =
-      reader.number("preamble_s", modem.preamble_s, {0, 10, false, false, "seconds"});
-  modem.coding_gain_db = reader.number("coding_gain_db", modem.coding_gain_db, kModemDecibels);
-  modem.detection_db = reader.number("detection_db", modem.detection_db, kModemDecibels);
-  modem.self_noise_db =
-      reader.number("self_noise_db", modem.self_noise_db, {0, 200, false, false, "decibels"});
-  modem.fading = reader.flag("fading", modem.fading);
-  modem.turnaround_s =
-      reader.number("turnaround_s", modem.turnaround_s, {0.01, 60, false, false, "seconds"});
-  if (const TomlValue* usbl = reader.table("usbl")) {
-    TableReader ranging(reader.source(), *usbl, reader.path("usbl"), kModemUsblKeys);
-    modem.usbl = read_usbl(ranging);
-    if (!ranging.ok()) reader.fail(ranging.status().error());
-  }
-  if (!reader.ok()) parent.fail(reader.status().error());
-  return modem;
+  return read_term<Modem>(parent, "modem", kModemKeys, [](TableReader& reader) {
+    Modem modem;
+    modem.position_m =
+        reader.vector3("position_m", modem.position_m, {-100, 100, false, false, "metres"});
+    modem.source_level_db =
+        reader.number("source_level_db", modem.source_level_db, {0, 260, false, false, "decibels"});
+    modem.frequency_hz = reader.number("frequency_hz", modem.frequency_hz, kModemFrequency);
+    modem.bandwidth_hz =
+        reader.number("bandwidth_hz", modem.bandwidth_hz, {1, 1e6, false, false, "hertz"});
+    if (modem.bandwidth_hz > 2.0 * modem.frequency_hz)
+      reader.refuse("bandwidth_hz",
+                    fmt::format("up to twice the frequency, {:g} Hz", 2.0 * modem.frequency_hz));
+    modem.bit_rate_hz =
+        reader.number("bit_rate_hz", modem.bit_rate_hz, {1, 1e6, false, false, "bits a second"});
+    modem.preamble_s =
+        reader.number("preamble_s", modem.preamble_s, {0, 10, false, false, "seconds"});
+    modem.coding_gain_db = reader.number("coding_gain_db", modem.coding_gain_db, kModemDecibels);
+    modem.detection_db = reader.number("detection_db", modem.detection_db, kModemDecibels);
+    modem.self_noise_db =
+        reader.number("self_noise_db", modem.self_noise_db, {0, 200, false, false, "decibels"});
+    modem.fading = reader.flag("fading", modem.fading);
+    modem.turnaround_s =
+        reader.number("turnaround_s", modem.turnaround_s, {0.01, 60, false, false, "seconds"});
+    modem.usbl = read_term<Ranging>(reader, "usbl", kModemUsblKeys, read_usbl);
+    return modem;
+  });
 }
 
 Result<Acoustics> read_acoustics(const SceneSource& source, const TomlValue& table) {

@@ -10,17 +10,6 @@ constexpr Interval kBedDepth{-kFarthest_m, kFarthest_m, false, false, "metres"};
 constexpr Interval kReach{0, 1000, true, false, "metres"};
 constexpr Interval kSomeSeconds{0, 1000, false, false, "seconds"};
 
-// Reads the table under key, where it is there; its fault becomes the water's.
-template <class Term, class Read>
-std::optional<Term> read_water_term(TableReader& water, Key key, KeyList keys, Read read) {
-  const TomlValue* table = water.table(key);
-  if (!table) return std::nullopt;
-  TableReader reader(water.source(), *table, water.path(key), keys);
-  Term term = read(reader);
-  if (!reader.ok()) water.fail(reader.status().error());
-  return term;
-}
-
 ForwardScatter read_forward_scatter(TableReader& reader) {
   ForwardScatter out;
   out.angle_rad = radians(
@@ -94,11 +83,11 @@ Murk read_murk(TableReader& reader) {
 }  // namespace
 
 void read_water_terms(TableReader& reader, Water& water) {
-  water.forward_scatter = read_water_term<ForwardScatter>(
-      reader, "forward_scatter", kForwardScatterKeys, read_forward_scatter);
-  water.snow = read_water_term<Snow>(reader, "snow", kSnowKeys, read_snow);
-  water.waves = read_water_term<SeaState>(reader, "waves", kWavesKeys, read_waves);
-  water.murk = read_water_term<Murk>(reader, "murk", kMurkKeys, read_murk);
+  water.forward_scatter = read_term<ForwardScatter>(reader, "forward_scatter", kForwardScatterKeys,
+                                                    read_forward_scatter);
+  water.snow = read_term<Snow>(reader, "snow", kSnowKeys, read_snow);
+  water.waves = read_term<SeaState>(reader, "waves", kWavesKeys, read_waves);
+  water.murk = read_term<Murk>(reader, "murk", kMurkKeys, read_murk);
   const auto each = [&](Key key, KeyList keys, auto read, auto& out) {
     std::size_t i = 0;
     for (const TomlValue& table : reader.tables(key)) {

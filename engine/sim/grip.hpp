@@ -1,6 +1,6 @@
-// What a body holds: a point mass at a place of it, which moves as that place does. The impulse
-// that makes both velocities one is equal and opposite, so that grabbing keeps their momentum. Pure
-// functions; any thread.
+// A thing that a body holds: a point mass at a place of it, which moves as that place does. The
+// impulse that makes both velocities one is equal and opposite, so that grabbing keeps their
+// momentum. Pure functions; any thread.
 //
 //   K J = u - (v + w x r),   K = 1/m + [1, -[r]x] M^-1 [1, -[r]x]^T
 //

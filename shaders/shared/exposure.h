@@ -1,4 +1,4 @@
-// What focus and shutter do to a picture before its lens: bindings and parameters of the focus and
+// Focus and shutter act on a picture before its lens: bindings and parameters of the focus and
 // shutter passes.
 #ifndef NERITIC_SHARED_EXPOSURE_H
 #define NERITIC_SHARED_EXPOSURE_H

@@ -20,7 +20,7 @@ namespace {
 constexpr double kLook_s = 0.2;
 constexpr TimeNs kLookEvery_ns = 2 * kSecond_ns;
 constexpr int kLostStream = -2;  // the library's error
-// Of a Polar strap; samples of other rates would give other intervals between beats.
+// The rate of a Polar strap; samples of other rates would give other intervals between beats.
 constexpr double kEcgRate_hz = 130.0, kMostOff = 0.01;
 constexpr double kResolve_s = 3.0, kOpen_s = 3.0, kExchange_s = 0.2;
 constexpr TimeNs kAskEvery_ns = 5 * kSecond_ns;

@@ -402,7 +402,7 @@ struct GripReading {
   }
 };
 
-// What a diver breathes from, where the scene names regulators. Litres at 1 bar.
+// The supply that a diver breathes from, if the scene names regulators. Litres at 1 bar.
 struct SupplyReading {
   std::uint64_t donor = 0;   // number of the diver whose gas it is, from 1 on; 0: its own
   std::uint64_t fed = 1;     // 0: nothing comes

@@ -46,7 +46,7 @@ render::LeastDrawn least_drawn(const sonar::Head& head, const scene::Sonar& sona
   const bool cone = sonar.kind == scene::SonarKind::kEchoSounder;
   // A cell or a pixel, whichever is larger.
   const double coarser = std::max(1.0, 1.0 / pixels_per_cell);
-  // Of a beam's width at half power, where a pattern says it; else of the beams' distance.
+  // A beam's width at half power, if a pattern says it; else the beams' distance.
   double beam_rad = head.samples_per_beam * grid.azimuth_step_rad();
   if (const auto& pattern = sonar.terms.beam.azimuth;
       pattern && pattern->shape != scene::BeamShape::kTable)

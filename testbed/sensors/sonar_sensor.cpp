@@ -41,7 +41,7 @@ sonar::HeadGather::View view_of(const render::GBuffer& g, const Pose& world_from
 // From outside, a closed mesh shows its front faces only.
 constexpr render::DrawListOptions kFrontFaces{.hide_back_faces = true};
 
-// What is drawn larger as a view of the head (or of its mirror image) sees it.
+// The things that are drawn larger, as a view of the head (or of its mirror image) sees them.
 std::optional<render::LeastDrawn> seen_from(const HeadState& state, const Pose& world_from_head) {
   std::optional<render::LeastDrawn> least = state.least;
   if (least) least->world_from_eye = world_from_head.rotation;

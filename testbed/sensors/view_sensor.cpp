@@ -218,7 +218,7 @@ Result<CameraHdr> declare_camera(const FrameParts& frame, const std::string& pre
   return out;
 }
 
-// What focus and shutter do, before the lens.
+// Focus and shutter, before the lens.
 Result<graph::ImageHandle> declare_focus_and_shutter(const FrameParts& frame,
                                                      const std::string& prefix,
                                                      graph::ImageHandle hdr,

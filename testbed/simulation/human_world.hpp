@@ -41,7 +41,7 @@ struct PhysicsRegulator {
   std::vector<scene::FreeFlow> free_flows;
   std::size_t place = 0;  // in PhysicsState::regulators()
 };
-// What a diver can still do, as the condition has it.
+// The abilities that the condition leaves a diver.
 struct Ability {
   bool conscious = true, holds_breath = false;
   double slowing = 1.0, strength = 1.0;

@@ -215,7 +215,7 @@ void PhysicsWorld::step(const PhysicsState& before, const PhysicsInputs& inputs,
   if (!modems_.all().empty()) step_modems(call);
 }
 
-// What is held pulls at its holder, thing by thing.
+// Each thing that is held pulls at its holder.
 void PhysicsWorld::pull_all(const StepCall& call) const {
   for (std::size_t i = 0; i < things_.things().size(); ++i) {
     const ObjectState& object = call.after.objects()[things_.things()[i].object];

@@ -56,7 +56,7 @@ class Things {
   // At the step's start, in the order of the scene: what is let go, handed over and grabbed.
   void choose(std::span<const PhysicsHuman> humans, const PhysicsInputs& inputs,
               const PhysicsState& before, PhysicsState& after) const;
-  // What is held pulls at its holder; bodies: of a grip in this step. True if it did.
+  // A thing that is held pulls at its holder; bodies: of a grip in this step. True if it did.
   bool pull(std::size_t thing, std::span<const PhysicsHuman> humans, const CarryingBody& body,
             const Vec3& current_m_s, double water_kg_m3, double dt_s, PhysicsState& after) const;
   // At the step's end: held things are where their grip is, free ones fall among what is solid.

@@ -15,7 +15,7 @@ struct PhysicsVehicle;
 // The sum of all jets at a point; those of a vehicle that is not beyond its reach.
 Vec3 wash_ned_m_s(std::span<const PhysicsVehicle> vehicles, const PhysicsState& before,
                   const Vec3& point_ned_m, double water_kg_m3);
-// Of a diver: one flow that drags the body as the jets along it do, by the mean of u |u|.
+// The one flow that drags a diver's body as the jets along it do, by the mean of u |u|.
 Vec3 wash_on_diver_ned_m_s(std::span<const PhysicsVehicle> vehicles, const PhysicsHuman& human,
                            const HumanPhysics& diver, const PhysicsState& before,
                            double water_kg_m3);

@@ -130,7 +130,7 @@ TEST(Cold, ASuitKeepsWarmLessSoDeeper) {
   const ColdSettings suit{.water_c = 10.0};
   ColdInputs shallow, deep;
   deep.ambient_pa = 5.0 * 101325.0;
-  // Of 5 mm, 0.65 gas, at a fifth of its volume; k 0.054.
+  // A suit of 5 mm, 0.65 gas, at a fifth of its volume; k 0.054.
   EXPECT_NEAR(suit_resistance(suit, shallow) - 1.0 / 230.0, 0.005 / 0.054, 1e-12);
   EXPECT_NEAR(suit_resistance(suit, deep) - 1.0 / 230.0, 0.005 * 0.48 / 0.054, 1e-12);
   ColdState none, worn, down;

@@ -350,7 +350,7 @@ TEST_F(TriangleTest, MoreViewsThanTheDeviceHasIsAnError) {
   EXPECT_EQ(made.error().code, ErrorCode::kUnsupported);
 }
 
-// What is described alike is one pipeline of the driver, also after all its owners are gone.
+// Equal descriptions are one pipeline of the driver, also after all its owners are gone.
 TEST_F(PipelineTest, EqualDescriptionsShareOneOfTheDrivers) {
   VkPipeline first = VK_NULL_HANDLE;
   {

@@ -173,7 +173,7 @@ TEST(Snow, KeptCellsGiveTheGrainsOfCellsThatAreMadeAnew) {
     }
   };
   for (int i = 0; i < 300; ++i) check(Vec3(0.2 * i, -20.0 + 0.01 * i, -0.1 * i), 0.05 * i, 5);
-  // What lies behind is forgotten.
+  // Cells that lie behind are forgotten.
   EXPECT_LT(field.cells(), 20000u);
   check(Vec3(0.0, -20.0, 0.0), 0.0, 6);
   snow.density_m3 = 900.0;

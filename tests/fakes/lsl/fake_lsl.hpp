@@ -50,7 +50,7 @@ class FakeLsl {
   enum Presence { kThere, kGoneForNow, kLost };
   // kGoneForNow: the library looks for it by itself. kLost: inlets say so, for ever.
   void presence(const std::string& name, Presence presence) { presence_(name.c_str(), presence); }
-  // What an outlet of text sent: "stamp text" a line.
+  // The samples that an outlet of text sent: "stamp text" a line.
   std::string markers(const std::string& name) { return markers_(name.c_str()); }
   // Calls that the interface does not allow, a line each.
   std::string wrong_calls() { return wrong_calls_(); }

@@ -208,7 +208,8 @@ TEST_F(Light, ASightThroughAShadowLosesWhatItsWaterWouldScatter) {
   NERITIC_ASSERT_OK(
       const shared::Lighting light,
       render::make_lighting(scene, state, Vec3(0.0, -3.0, 0.0), scene.cameras[0].exposure, false));
-  // What a level sight is sent of the beam, and of the light round it (shaders/shared/water.glsl).
+  // The shares of the beam and of the light round it that a level sight is sent
+  // (shaders/shared/water.glsl).
   const double particles = light.particle_scattering.y, water = light.water_scattering.y;
   const double direct =
       light.direct_share * std::exp(-3.0 * (particles * (1.0 - shared::kParticleG) + water));

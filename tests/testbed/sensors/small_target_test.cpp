@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(Devices, SmallTargets,
 
 using SmallTargetsOnABottom = test::GpuTest;
 
-// What is drawn larger grows away from the bottom, which would hide half of it.
+// A thing that is drawn larger grows away from the bottom, which would hide half of it.
 TEST_F(SmallTargetsOnABottom, ABallThatLiesOnTheBottomIsAsLoudAsOneInOpenWater) {
   const scene::Sonar sonar = device_of("blueview_p900_45");
   const std::vector<Ball> places{{8.0, 0.01, radians(-4.0)}};
