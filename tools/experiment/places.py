@@ -1,5 +1,6 @@
-"""Places and waters of a detector's pictures. Those of one split of SPLITS occur in no other one, models of the place
-included: "train" to learn from, "choose" to choose the weights and their temperature by, "test" for `detector`.
+"""Places and waters of a detector's pictures. Those of "test" occur in no other split, models of the place
+included: "train" to learn from, "choose" (a place of its own, with waters and sand of "train") to choose the weights and
+their temperature by, "test" for `detector`.
 
 A place is TOML of a scene; {floor} is the height of its bottom, {assets} the folder of models and textures.
 """

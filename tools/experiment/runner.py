@@ -16,7 +16,7 @@ import traceback
 
 from scenario import Failed, Refused
 
-FORMAT = 2
+FORMAT = 3
 
 
 def _one(do, run, program):
@@ -33,13 +33,13 @@ def _one(do, run, program):
         measures, series = {}, {}
         failure = f"{type(error).__name__}: {error} ({os.path.basename(place.filename)}:{place.lineno})"
         failure = failure.replace(folder + os.sep, "")  # so that the same cause has the same words
-    return {"condition": run.condition, "seed": run.seed, "settings": run.settings, "measures": measures,
+    return {"condition": run.condition, "seed": run.seed, "files": run.files, "settings": run.settings, "measures": measures,
             "failure": failure, "series": series, "wall_s": round(time.monotonic() - begun, 3),
             "processor_s": round(_processor_s() - worked, 3)}
 
 
 def _processor_s():
-    """Of this process and of those that it ran."""
+    """Processor seconds of this process and of those that it ran."""
     used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     return sum(u.ru_utime + u.ru_stime for u in used)
 
@@ -126,6 +126,8 @@ def run_all(scenario, out, program, workers, resume, quiet):
             raise Refused(f"{path}: found results of other settings; accepted: the scenario and --set that began it, "
                           "or another --out")
         kept = {json.dumps([r["condition"], r["seed"]], sort_keys=True): r for r in results}
+        files = {r.key(): r.files for r in runs}  # a file that was edited since makes its runs anew
+        kept = {k: r for k, r in kept.items() if files.get(k, r["files"]) == r["files"]}
     missing = [r for r in runs if r.key() not in kept]
     # Written anew when whole, so that a line that was cut off is gone.
     _write_lines(path, [head, *kept.values()])

@@ -103,10 +103,11 @@ class Setting:
 
 
 class Run:
-    """One run: its condition (the factors' levels), seed and settings. Plain data; crosses processes."""
+    """One run: its condition (the factors' levels), seed, settings and the hashes of the files that these name. Plain data;
+    crosses processes."""
 
-    def __init__(self, index, condition, seed, settings):
-        self.index, self.condition, self.seed, self.settings = index, condition, seed, settings
+    def __init__(self, index, condition, seed, settings, files=()):
+        self.index, self.condition, self.seed, self.settings, self.files = index, condition, seed, settings, list(files)
 
     def key(self):
         return json.dumps([self.condition, self.seed], sort_keys=True)
@@ -226,17 +227,22 @@ class Scenario:
         out = []
         for levels in itertools.product(*self.factors.values()):
             condition = dict(zip(self.factors, levels))
+            files = self._hashes({**self.settings, **condition})
             for i in range(self.runs):
                 seed = self.seed + i
                 drawn = {k: draw(seed, k, *v) for k, v in self.vary.items()}
                 drawn = {k: int(v) if self.kind.SETTINGS[k].whole else v for k, v in drawn.items()}
-                out.append(Run(len(out), condition, seed, {**self.settings, **drawn, **condition}))
+                out.append(Run(len(out), condition, seed, {**self.settings, **drawn, **condition}, files))
         return out
+
+    def _hashes(self, settings):
+        """Hashes of the files that decide a run's numbers beside the settings."""
+        return [_hash_of(f) for f in getattr(self.kind, "files", lambda settings: [])(settings)]
 
     def fingerprint(self):
         """The hash of what decides a single run's numbers, the content of files that settings name included: results of
-        another fingerprint are not resumed. Levels of factors are not in it, so that more of them can be added."""
+        another fingerprint are not resumed. Levels of factors are not in it, so that more of them can be added:
+        each run keeps the hashes of the files that its own levels name."""
         own = [self.data.get(k) for k in ("task", "stages", "measures")]
-        files = getattr(self.kind, "files", lambda settings: [])(self.settings)
-        told = [self.kind_name, self.settings, self.vary, sorted(self.factors), own, [_hash_of(f) for f in files]]
+        told = [self.kind_name, self.settings, self.vary, sorted(self.factors), own, self._hashes(self.settings)]
         return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:16]

@@ -4,6 +4,7 @@ import math
 import numpy as np
 
 import intervals
+import report
 import summary
 from shark_scene import BESIDE_M
 
@@ -26,7 +27,7 @@ def notes(results):
         times = summary.values_of(group, "time_to_block_s")
         runs = intervals.runs_to_tell(times) if len(times) >= 6 else None
         if runs:
-            name = ", ".join(f"{k} {v}" for k, v in condition.items()) or "all runs"
+            name = report.words(condition)
             yield (f"{name}: {runs} runs a group tell a time to block that is 10 % longer, with a power of 80 % at 5 % (two-sided, "
                    f"unpaired); by drawing groups of {max(runs, 20)} from these runs the power is "
                    f"{100 * intervals.power_by_draws(times, max(runs, 20)):.0f} %.")
@@ -43,7 +44,7 @@ def figures(scenario, results, style):
         return
     groups = {}
     for r in done:
-        groups.setdefault(", ".join(f"{k} {v}" for k, v in r["condition"].items()) or "all runs", []).append(r)
+        groups.setdefault(report.words(r["condition"]), []).append(r)
     shown = list(groups.items())[:len(LINES)]
     fig = style.figure(900, 640)
     _distances(style.area(fig, 70, 60, 870, 320), shown, style)

@@ -28,7 +28,7 @@ from scenario import Failed, Refused, check_keys
 
 WORDS = ("begin", "enrol", "run", "ask", "mark", "withdraw", "table", "wizard")
 # Flags of neritic whose value is a file or folder that a block writes.
-WRITES = ("--record", "--log", "--plot", "--save", "--screenshot", "--timeline", "--out")
+WRITES = ("--record", "--recordings", "--log", "--plot", "--save", "--screenshot", "--timeline", "--out")
 
 
 def read_plan(path):
@@ -71,7 +71,7 @@ def _check_writes(where, words):
     for i, word in enumerate(words):
         flag, mark, value = word.partition("=")
         value = value if mark else "".join(words[i + 1:i + 2])
-        if flag in WRITES and not value.startswith(("{record}", "{folder}")):
+        if flag in WRITES and (not value.startswith(("{record}", "{folder}")) or ".." in value.split("/")):
             raise Refused(f"{where}: found {flag} {value}; accepted: {flag} {{record}}... or {{folder}}/..., the participant's own")
 
 
@@ -103,12 +103,11 @@ class Study:
 @contextlib.contextmanager
 def alone(folder):
     """The study as it is now, which no other process changes meanwhile. Nobody is asked anything in it."""
-    study = Study(folder)
+    Study(folder)  # refuses a folder that holds no study
     handle = os.open(folder, os.O_RDONLY)
     try:
         fcntl.flock(handle, fcntl.LOCK_EX)
-        study.__init__(folder)
-        yield study
+        yield Study(folder)
     finally:
         os.close(handle)
 
@@ -240,7 +239,7 @@ def enrol(asked, screen):
         known = study.data["participants"]
         # A folder that is there already was left by an enrolment that was cut short: its pseudonym is not given.
         number = len(known) + 1
-        while os.path.exists(os.path.join(asked.folder, "participants", f"P{number:02d}")):
+        while f"P{number:02d}" in known or os.path.exists(os.path.join(asked.folder, "participants", f"P{number:02d}")):
             number += 1
         who = f"P{number:02d}"
         # The order that fewest who take part have: those who withdraw leave their place in the balance to the next.

@@ -60,7 +60,7 @@ def gather(maker, program, split, scenes, seed, each, workers, told):
 
 
 def network(torch, channels, classes):
-    """A residual network of 67 000 weights: 64 x 64 to 4 x 4 maps, then the mean and the largest of each map."""
+    """A residual network of 65 000 weights: 64 x 64 to 4 x 4 maps, then the mean and the largest of each map."""
     nn = torch.nn
 
     def block(a, b, stride):

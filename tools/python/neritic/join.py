@@ -7,7 +7,7 @@ server's scene has the participant so. Poses go both ways as samples, 60 times a
 and each side moves them on between two (testbed/samples). A participant that falls silent for half a
 second goes back to its own track. Vehicles and divers join alike: elsewhere a diver is an object with a diver's
 model, whose limbs are the diver's own: a suit here moves them there.
-What is said by modem stays in the scene where it is said.
+Messages by modem stay in the scene where they are sent.
 """
 
 from __future__ import annotations
