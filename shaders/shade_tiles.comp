@@ -3,8 +3,8 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Sorts a picture's tiles, a shade workgroup each, into lists: those that show a solid and those that show water
-// alone, among rows that can see a wavy surface and rows that cannot. Shading has a pipeline for each: a CPU
+// Sorts a picture's tiles, a shade workgroup each, into lists: those that show water alone and those that
+// show a solid. Shading has a pipeline for each: a CPU
 // computes both sides of a branch for every pixel. Each list's head is what vkCmdDispatchIndirect reads.
 #include "shared/lighting.h"
 
@@ -23,8 +23,7 @@ void main() {
   for (int y = 0; y < int(kShadeGroup); ++y)
     for (int x = 0; x < int(kShadeGroup); ++x)
       nearest = max(nearest, texelFetch(depth_image, ivec3(min(first + ivec2(x, y), last), 0), 0).r);
-  bool sea = tile.y >= push.sea_first && tile.y < push.sea_end;
-  uint list = (nearest > 0.0 ? 1u : 0u) + (sea ? 2u : 0u);
+  uint list = nearest > 0.0 ? 1u : 0u;
   uint slot = atomicAdd(tiles[kShadeTileHead * list], 1u);
   tiles[kShadeTileHead * kShadeTileLists + push.wide * push.high * list + slot] = tile.x | tile.y << 16;
   if (tile == uvec2(0u))

@@ -88,7 +88,9 @@ void main() {
       if (kCascades > 0u) lit *= 1.0 - core_share(light.origin_depth_m - place.y) * (1.0 - sun_reaches(place));
       sum += lit;
     }
-    ratio = 1.0 + (sum / float(params.samples) - 1.0) * clamp(reached / all, 0.0, 1.0);
+    // A sight of next to no water scatters nothing: 0 / 0 must not reach the blur.
+    float part = all > 1e-6 ? clamp(reached / all, 0.0, 1.0) : 1.0;
+    ratio = 1.0 + (sum / float(params.samples) - 1.0) * part;
   }
   imageStore(out_image, at, vec4(ratio, 0.0, 0.0, visibility_distance(planar_m)));
 }

@@ -90,8 +90,8 @@ void PipelineShelf::drop_unused() {
   for (const auto& [key, entry] : entries_)
     if (entry.made.use_count() == 1) unused.emplace_back(entry.asked, &key);
   if (unused.size() <= kUnusedKept) return;
-  const auto oldest = std::ranges::min_element(unused);
-  entries_.erase(*oldest->second);
+  std::ranges::sort(unused);
+  for (std::size_t i = 0; i + kUnusedKept < unused.size(); ++i) entries_.erase(*unused[i].second);
 }
 
 }  // namespace neritic::gpu

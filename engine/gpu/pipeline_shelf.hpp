@@ -1,7 +1,7 @@
 // Inside engine/gpu only: the pipelines that a device has made, by their descriptions. Worlds and
 // sessions that follow one another, and sensors that are alike, need the same pipelines; a driver
-// takes 10 to 300 ms to make one. Those that nobody uses are kept, kUnusedKept of them, the least
-// recently asked for going first. Any thread.
+// takes 10 to 300 ms to make one. One is made at a time; then at most kUnusedKept that nobody uses
+// remain, those that were asked for last. Any thread.
 #pragma once
 
 #include <cstddef>

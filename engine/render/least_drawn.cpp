@@ -126,7 +126,9 @@ std::optional<Growing> growing(const Extent& extent, const LeastDrawn& least, bo
   const double grown_rad = std::max(
       own_high_rad, std::min(least.high_rad, least.elevation_max_rad - least.elevation_min_rad));
   p.low_rad = grows_up ? p.own_low_rad : p.own_high_rad - grown_rad;
-  p.low_rad = std::clamp(p.low_rad, least.elevation_min_rad, least.elevation_max_rad - grown_rad);
+  // The upper limit first: rounding can leave it below the lower one.
+  p.low_rad =
+      std::max(std::min(p.low_rad, least.elevation_max_rad - grown_rad), least.elevation_min_rad);
   p.high_rad = p.low_rad + grown_rad;
   return g;
 }

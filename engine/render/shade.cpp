@@ -19,18 +19,6 @@ struct ShadeRows {
   std::uint32_t list = 0;
 };
 
-// The lists of tiles that rows make. A picture of several layers has none: a CPU's driver must see
-// which layer a workgroup reads.
-std::vector<ShadeRows> lists_of(const std::vector<ShadeRows>& rows) {
-  std::vector<ShadeRows> lists;
-  for (const bool sea : {false, true})
-    if (std::ranges::any_of(rows, [&](const ShadeRows& part) { return part.sea == sea; }))
-      for (const bool surfaces : {false, true})
-        lists.push_back(
-            {.sea = sea, .surfaces = surfaces, .list = (surfaces ? 1u : 0u) + (sea ? 2u : 0u)});
-  return lists;
-}
-
 // Splits the picture where no view sees the wavy surface before the water has hidden it (sea_meets
 // in shaders/shared/sea_surface.glsl, with room for the waves' height).
 std::vector<ShadeRows> rows_of_sea(const ViewSet& views, const shared::Lighting& lighting,
@@ -89,14 +77,15 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
   // Rows that see no sea are spared its waves: a CPU driver computes them for every pixel.
   std::vector<ShadeRows> rows{{0, groups(gbuffer.height), waves.has_value(), nullptr}};
   if (waves) rows = rows_of_sea(views, lighting, *waves, groups(gbuffer.height));
-  // With waves rows alone are told apart: lists beside them crashed lavapipe (Mesa 22.3), and why
-  // is not known.
+  // Tiles of water alone are shaded without what solids need. Not with waves: lists beside them
+  // crashed lavapipe (Mesa 22.3); cause unknown, arguments and barriers were checked. Not with
+  // several layers: a CPU's driver must see which layer a workgroup reads.
   const bool tiled = gbuffer.layers == 1 && !waves;
   graph::BufferHandle tiles;
   if (tiled) {
     NERITIC_TRY(tiles, declare_shade_tiles(graph, prefix, gbuffer,
-                                           {groups(gbuffer.width), groups(gbuffer.height), 0, 0}));
-    rows = lists_of(rows);
+                                           {groups(gbuffer.width), groups(gbuffer.height)}));
+    rows = {{.surfaces = false, .list = 0}, {.surfaces = true, .list = 1}};
   }
   for (ShadeRows& part : rows) {
     gpu::Pipeline& pipeline = shade_[{

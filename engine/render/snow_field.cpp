@@ -123,8 +123,9 @@ void SnowField::append(const scene::Snow& snow, std::uint64_t seed, const Vec3& 
                          shared::kParticleSnow, grain.look});
         }
       }
-  // Cells out of sight are let go of once they are more than those in sight.
-  if (cells_.size() > 4 * seen + 1024) forget_unused();
+  // Cells out of sight are let go of once they are more than those in sight; looking at all of them
+  // each time would cost more than they do.
+  if (cells_.size() > 4 * seen + 1024 && calls_ % kKeptCalls == 0) forget_unused();
 }
 
 }  // namespace neritic::render

@@ -118,10 +118,8 @@ struct ShadePush {
 struct ShadeTilesPush {
   uint wide;  // tiles of the picture
   uint high;
-  uint sea_first;  // rows of tiles that can see the wavy surface
-  uint sea_end;
 };
-NERITIC_CONST uint kShadeTileLists = 4;
+NERITIC_CONST uint kShadeTileLists = 2;
 NERITIC_CONST uint kShadeTileHead = 4;
 NERITIC_CONST uint kShadeTilesDepth = 0;
 NERITIC_CONST uint kShadeTilesOut = 1;

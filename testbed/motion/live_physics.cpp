@@ -131,6 +131,7 @@ void LivePhysics::await_step() {
   // One that is late by more than a step comes when it comes: the machine is slow, or time stands.
   if (!simulation_->running() || left_ns > wait_share_ * step_ns || left_ns < -step_ns) return;
   clock_->wait_until(due_ns);
+  if (clock_->now() < due_ns) return;  // paused or slowed down meanwhile
   const TimeNs end_ns = now_ns() + kMostLate_ns;
   for (reader_->update(); reader_->newest().step == step && now_ns() < end_ns; reader_->update())
     host_.wait_until(now_ns() + kLook_ns);

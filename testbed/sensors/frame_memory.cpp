@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/memory.hpp"
+#include "shared/caustics.h"
 #include "testbed/sensors/session.hpp"
 
 namespace neritic::testbed {
@@ -60,7 +61,8 @@ std::uint64_t shared_light_bytes(const scene::Scene& scene) {
   bytes += lamps * 4 * side * side;
   if (scene.sun && scene.sun->caustics) {
     const std::uint64_t texels = scene.sun->caustics->texels;
-    bytes += texels * texels * (8 * 4 + 2 * 8);  // sums of eight levels, and two layers of halves
+    // Sums of all levels, and layers of halves.
+    bytes += texels * texels * (4 * shared::kCausticLevels + 8 * shared::kCausticLayers);
   }
   return bytes;
 }

@@ -63,6 +63,7 @@ Status declare_shared_light(const FrameParts& frame, const ViewsWork& work,
   caustics.texels = times(caustics.texels, detail.shadow_size, 16, 2048);
   const double origin_depth_m = static_cast<double>(lighting.origin_depth_m);
   double shallow_m = origin_depth_m - draws.highest_m, deep_m = origin_depth_m - draws.lowest_m;
+  if (draws.lowest_m > draws.highest_m) shallow_m = deep_m = 0.0;  // nothing is drawn
   if (scene.sun->shafts) {  // they lie in all the water about
     shallow_m = 0.0;
     deep_m = std::max(deep_m, origin_depth_m + scene.sun->shafts->reach_m);

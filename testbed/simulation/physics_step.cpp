@@ -1,5 +1,6 @@
-// The step (physics_world.hpp): every vehicle and diver by itself, then pairs that meet, then every
-// one along what is solid. Only the pairs depend on one another, so that threads share the rest. A
+// The step (physics_world.hpp): things are grabbed or let go; every vehicle and diver by itself;
+// then, one after another, pairs that meet and things that are held; then every one along what is
+// solid; at last free things, gas taken from others, modems. Threads share the second and fourth. A
 // vehicle's step has a part between any two instants of its control and its sensors; all parts but
 // the last end before pairs meet.
 #include <algorithm>
@@ -215,17 +216,19 @@ void PhysicsWorld::step(const PhysicsState& before, const PhysicsInputs& inputs,
   if (!modems_.all().empty()) step_modems(call);
 }
 
-// Each thing that is held pulls at its holder.
+// The currents at things that move; each that is held pulls at its holder.
 void PhysicsWorld::pull_all(const StepCall& call) const {
   for (std::size_t i = 0; i < things_.things().size(); ++i) {
     const ObjectState& object = call.after.objects()[things_.things()[i].object];
+    const ThingState& thing = call.after.things()[i];
+    if (thing.rests != 0 || acting(object.groups.front()) == Authority::kLive) continue;
     Vec3& current_m_s = call.scratch.thing_currents_m_s[i];
     const Vec3 at_ned_m = rov::ned_from_world(object.motion.pose.position_m);
     current_m_s = rov::world_from_ned(current_ned_m_s(at_ned_m, call.time.time_s()));
     if (washes_)
       current_m_s +=
           rov::world_from_ned(wash_ned_m_s(vehicles_, call.before, at_ned_m, water_kg_m3_));
-    const std::uint64_t holder = call.after.things()[i].holder;
+    const std::uint64_t holder = thing.holder;
     if (holder == 0) continue;
     const PhysicsGrip& grip = things_.grips()[holder - 1];
     const auto pull = [&](const sim::InverseMass& inverse_mass, sim::BodyMotion& free) {

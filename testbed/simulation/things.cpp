@@ -37,8 +37,8 @@ Result<Things> Things::create(const scene::Scene& scene, const Movers& movers) {
     thing.moving_kg = std::max(
         kLeastMoving_kg, thing.settings.mass_kg +
                              kSphereAdded * scene.physics->water_kg_m3 * thing.settings.volume_m3);
-    const double radius_m = std::cbrt(0.75 * thing.settings.volume_m3 / std::numbers::pi);
-    thing.shape.add_sphere(Vec3(0.0), std::max(radius_m, 1e-3));
+    thing.radius_m = std::max(std::cbrt(0.75 * thing.settings.volume_m3 / std::numbers::pi), 1e-3);
+    thing.shape.add_sphere(Vec3(0.0), thing.radius_m);
     // It does not turn while it is free: only its place moves.
     for (std::size_t axis = 0; axis < 3; ++axis)
       thing.inverse_mass[7 * axis] = 1.0 / thing.moving_kg;
@@ -138,7 +138,7 @@ void Things::choose(std::span<const PhysicsHuman> humans, const PhysicsInputs& i
     ObjectState& object = after.objects()[things_[i].object];
     if (acting(object.groups.front()) == Authority::kLive) {
       if (state.holder != 0) give(i, 0);  // a device has it
-      state.rests = things_[i].settings.racked ? 1 : 0;
+      state.rests = 0;                    // a device took it out of its rack
       continue;
     }
     object.motion = before.objects()[things_[i].object].motion;
@@ -160,7 +160,11 @@ void Things::choose(std::span<const PhysicsHuman> humans, const PhysicsInputs& i
       const bool wants = choice(g) == GripChoice::kClose ||
                          (by_itself && grips_[g].sort == OwnerSort::kDiver && state.holder != 0 &&
                           grips_[state.holder - 1].sort == OwnerSort::kVehicle);
-      if (!wants || (state.holder != 0 && grips_[g].sort != OwnerSort::kDiver)) continue;
+      // A closed hand keeps it from another hand: two would take it from one another in every step.
+      const bool kept = state.holder != 0 && (grips_[g].sort != OwnerSort::kDiver ||
+                                              (grips_[state.holder - 1].sort == OwnerSort::kDiver &&
+                                               choice(state.holder - 1) == GripChoice::kClose));
+      if (!wants || kept) continue;
       const Motion grip = grip_motion(g, humans, before);
       if (glm::distance(grip.pose.position_m, at.pose.position_m) > settings.reach_m) continue;
       if (glm::distance(grip.velocity_m_s, at.velocity_m_s) > settings.most_m_s) continue;
@@ -171,35 +175,39 @@ void Things::choose(std::span<const PhysicsHuman> humans, const PhysicsInputs& i
   }
 }
 
+double wet_share(const PhysicsThing& thing, double height_m) {
+  return std::clamp(0.5 - 0.5 * height_m / thing.radius_m, 0.0, 1.0);
+}
+
 Vec3 fallen(const PhysicsThing& thing, const Vec3& velocity_m_s, const Vec3& current_m_s,
-            double water_kg_m3, double dt_s) {
+            double water_kg_m3, double dt_s, double wet) {
   const scene::Thing& settings = thing.settings;
-  const double net_n = (settings.mass_kg - water_kg_m3 * settings.volume_m3) * diver::kGravity_m_s2;
+  const double net_n =
+      (settings.mass_kg - wet * water_kg_m3 * settings.volume_m3) * diver::kGravity_m_s2;
   const Vec3 through = velocity_m_s - current_m_s;
   const Vec3 pushed = through + Vec3(0.0, -net_n / thing.moving_kg * dt_s, 0.0);
   // Drag of the speed halfway, implicit: v' = p - k |v'| v', in closed form.
-  const double k = 0.5 * water_kg_m3 * settings.drag_area_m2 / thing.moving_kg * dt_s;
+  const double k = wet * 0.5 * water_kg_m3 * settings.drag_area_m2 / thing.moving_kg * dt_s;
   const double speed = glm::length(pushed);
   const double slowed =
       k * speed > 0.0 ? (std::sqrt(1.0 + 4.0 * k * speed) - 1.0) / (2.0 * k) : speed;
   return speed > 0.0 ? current_m_s + pushed * (slowed / speed) : current_m_s;
 }
 
-bool Things::pull(std::size_t index, std::span<const PhysicsHuman> humans, const CarryingBody& body,
+void Things::pull(std::size_t index, std::span<const PhysicsHuman> humans, const CarryingBody& body,
                   const Vec3& current_m_s, double water_kg_m3, double dt_s,
                   PhysicsState& after) const {
   const PhysicsThing& thing = things_[index];
   const ThingState& state = after.things()[index];
-  if (state.holder == 0) return false;
   ObjectState& object = after.objects()[thing.object];
   sim::Held held{on_body_m(grips_[state.holder - 1], humans, after),
-                 fallen(thing, object.motion.velocity_m_s, current_m_s, water_kg_m3, dt_s),
+                 fallen(thing, object.motion.velocity_m_s, current_m_s, water_kg_m3, dt_s,
+                        wet_share(thing, object.motion.pose.position_m.y)),
                  thing.moving_kg};
   const Vec3 impulse = sim::grip_impulse(body.inverse_mass, body.free, held);
   sim::hold(body.inverse_mass, impulse, dt_s, body.free, held);
   object.motion.velocity_m_s = held.velocity_m_s;
   after.grips()[state.holder - 1].load_n = glm::length(impulse) / dt_s;
-  return true;
 }
 
 void Things::finish(std::span<const PhysicsHuman> humans, const sim::StaticWorld& solid,
@@ -224,7 +232,8 @@ void Things::finish(std::span<const PhysicsHuman> humans, const sim::StaticWorld
       continue;
     }
     const Quat& q = motion.pose.rotation;
-    const Vec3 velocity = fallen(thing, motion.velocity_m_s, current_m_s[i], water_kg_m3, dt_s);
+    const Vec3 velocity = fallen(thing, motion.velocity_m_s, current_m_s[i], water_kg_m3, dt_s,
+                                 wet_share(thing, motion.pose.position_m.y));
     const sim::Twist twist{glm::conjugate(q) * velocity, Vec3(0.0)};
     const sim::BodyMotion moved =
         sim::move_body(solid, thing.shape, thing.inverse_mass, motion.pose,

@@ -27,6 +27,7 @@ struct PhysicsThing {
   scene::Thing settings;
   double moving_kg = 1.0;  // with its added mass
   sim::BodyShape shape;    // a sphere of its volume
+  double radius_m = 1e-3;  // of that sphere
   sim::InverseMass inverse_mass{};
   Pose start;
 };
@@ -56,8 +57,8 @@ class Things {
   // At the step's start, in the order of the scene: what is let go, handed over and grabbed.
   void choose(std::span<const PhysicsHuman> humans, const PhysicsInputs& inputs,
               const PhysicsState& before, PhysicsState& after) const;
-  // A thing that is held pulls at its holder; bodies: of a grip in this step. True if it did.
-  bool pull(std::size_t thing, std::span<const PhysicsHuman> humans, const CarryingBody& body,
+  // A thing, which must be held, pulls at its holder; body: of the grip in this step.
+  void pull(std::size_t thing, std::span<const PhysicsHuman> humans, const CarryingBody& body,
             const Vec3& current_m_s, double water_kg_m3, double dt_s, PhysicsState& after) const;
   // At the step's end: held things are where their grip is, free ones fall among what is solid.
   void finish(std::span<const PhysicsHuman> humans, const sim::StaticWorld& solid,
@@ -72,11 +73,14 @@ class Things {
   std::vector<PhysicsGrip> grips_;
 };
 
+// The share of a thing that is under water, as of a float between its radius above and below.
+double wet_share(const PhysicsThing& thing, double height_m);
+
 // The velocity of a thing after dt_s of weight, buoyancy and drag in that current; stable for any
 // dt_s. Closed form of a fall from rest: v_t tanh(t / tau), v_t = sqrt(2 (m - rho V) g / (rho C_d
 // A)), tau = (m + 0.5 rho V) v_t / ((m - rho V) g).
 Vec3 fallen(const PhysicsThing& thing, const Vec3& velocity_m_s, const Vec3& current_m_s,
-            double water_kg_m3, double dt_s);
+            double water_kg_m3, double dt_s, double wet = 1.0);
 
 GripReading grip_reading(const Things& things, std::size_t grip,
                          std::span<const PhysicsHuman> humans, const PhysicsState& state);

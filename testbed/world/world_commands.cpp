@@ -92,7 +92,9 @@ Result<Said> object_command(const PhysicsObject& object, const std::string& wher
   if (kind == "joints" && object.limbs) return diver_command(where, kind, given);
   if (kind == "joints")
     return refusal(where, "an object without limbs", "one whose model has the 16 nodes of a diver");
-  if (kind != "pose") return unknown_name(where, kind, {"pose", "joints"});
+  if (kind != "pose")
+    return object.limbs ? unknown_name(where, kind, {"pose", "joints"})
+                        : unknown_name(where, kind, {"pose"});
   std::vector<double> values(given.begin(), given.end());
   if (values.size() != 7) NERITIC_TRY_STATUS(check_count(where, values.size(), 7, 13));
   if (values.size() != 7 && values.size() != 13)

@@ -317,10 +317,6 @@ Status choose_frames(RenderFlags& flags, const SampleLog* recorded, double rate_
   return {};
 }
 
-}  // namespace
-
-namespace {
-
 // One run; told: how it went.
 Result<std::string> render_once(const RenderFlags& asked, RenderedRun& told) {
   RenderFlags flags = asked;

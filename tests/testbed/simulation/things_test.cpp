@@ -45,6 +45,16 @@ TEST(SceneThing, AFreeOneFallsAsItsClosedFormAndRestsOnTheFloor) {
   EXPECT_LT(glm::length(dive.state().objects()[0].motion.velocity_m_s), 0.02);
 }
 
+TEST(SceneThing, ABuoyantOneRisesAndFloatsAtTheSurface) {
+  // Half as heavy as its water: it floats half under, so that its middle is at the surface.
+  TestDive dive = dive_of(kStillWater + thing_text("[0, -2, 0]",
+                                                   "mass_kg = 0.514, volume_l = 1, "
+                                                   "drag_area_m2 = 0.01"));
+  dive.run(20.0);
+  EXPECT_NEAR(tool_place(dive).y, 0.0, 0.03);
+  EXPECT_LT(glm::length(dive.state().objects()[0].motion.velocity_m_s), 0.2);
+}
+
 TEST(SceneThing, ARackedOneStaysAndAGripperThatClosesTakesItsWeight) {
   const std::string text =
       kStillWater +
