@@ -113,45 +113,6 @@ PhysicsState PhysicsWorld::start() const {
   return state;
 }
 
-namespace {
-
-// Bit i: the scene has a file for group i.
-std::uint64_t recorded_groups(const PhysicsHuman& human) {
-  const auto bit = [](DiverGroup group) {
-    return std::uint64_t{1} << static_cast<std::uint64_t>(group);
-  };
-  return (human.recording ? bit(DiverGroup::kBody) : 0) |
-         (human.buttons ? bit(DiverGroup::kButtons) : 0);
-}
-
-}  // namespace
-
-void PhysicsWorld::apply(PhysicsInputs& inputs, const Sample& sample, std::uint64_t step) const {
-  const Stream& stream = streams_[sample.header.stream];
-  if (const ModemSend* message = std::get_if<ModemSend>(&sample.payload)) {
-    ModemInputs& modem = inputs.modems()[*modems_.find(stream.sort, stream.owner)];
-    modem.queue[modem.asked++ % ModemInputs::kQueued] = *message;
-    return;
-  }
-  if (const GripUse* use = std::get_if<GripUse>(&sample.payload)) {
-    inputs.grips()[*things_.find(stream.sort, stream.owner)].use = *use;
-    return;
-  }
-  if (const RegulatorUse* use = std::get_if<RegulatorUse>(&sample.payload)) {
-    inputs.regulators()[humans_[stream.owner].regulator->place].use = *use;
-    return;
-  }
-  if (stream.sort == OwnerSort::kDiver)
-    testbed::apply(inputs.humans()[stream.owner], sample, step,
-                   recorded_groups(humans_[stream.owner]));
-  else if (stream.sort == OwnerSort::kVehicle)
-    testbed::apply(inputs.vehicles()[stream.owner], sample, step);
-  else
-    testbed::apply(
-        inputs.objects()[stream.owner], sample, step,
-        objects_[stream.owner].limbs ? &inputs.limbs()[*objects_[stream.owner].limbs] : nullptr);
-}
-
 rov::RayQuery PhysicsWorld::rays() const {
   const auto cast = [](const void* solid, const Vec3& origin_ned_m, const Vec3& direction_ned,
                        double most_m) {
@@ -426,37 +387,11 @@ rov::SensorWorld PhysicsWorld::sensor_world(std::size_t vehicle) const {
   return {rays(), seed_, vehicle, vehicles_[vehicle].water};
 }
 
-const rov::SensorReadings* PhysicsWorld::readings(const PhysicsState& state,
-                                                  std::size_t vehicle) const {
-  const auto& at = vehicles_[vehicle].readings;
-  return at ? &state.readings()[*at] : nullptr;
-}
-
-StateFormat PhysicsWorld::state_format() const {
-  std::vector<std::string> names{"simulation"};
-  names.insert(names.end(), sources_.begin(), sources_.end());
-  return {scene_hash_, step_s_, start(), start_inputs(), std::move(names)};
-}
-
 PhysicsSimulation::Step PhysicsWorld::step_function(unsigned threads) const {
   if (threads == 0) threads = threads_worth(vehicles_.size(), humans_.size());
   return [this, scratch = scratch(threads)](
              const PhysicsState& before, const PhysicsInputs& inputs, const sim::StepTime& time,
              PhysicsState& after) mutable { step(before, inputs, time, scratch, after); };
-}
-
-std::unique_ptr<PhysicsSimulation> PhysicsWorld::simulation(sim::SimulationOptions options,
-                                                            unsigned threads) const {
-  options.step_s = step_s_;
-  // A scene may have more streams than an inbox usually keeps samples.
-  auto inbox = std::make_unique<SampleInbox>(
-      streams_, std::max<std::size_t>(SampleInbox::kCapacity, streams_.size()));
-  for (const std::string& name : sources_) NERITIC_CHECK(inbox->open(name).ok(), "{}", name);
-  return std::make_unique<PhysicsSimulation>(
-      options, start(), start_inputs(), std::move(inbox), step_function(threads),
-      [this](PhysicsInputs& inputs, const Sample& sample, std::uint64_t step) {
-        apply(inputs, sample, step);
-      });
 }
 
 }  // namespace neritic::testbed

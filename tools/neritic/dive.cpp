@@ -18,6 +18,7 @@
 #include "testbed/view/bindings.hpp"
 #include "testbed/view/dive_view.hpp"
 #include "tools/neritic/commands.hpp"
+#include "tools/neritic/dive_flags.hpp"
 #include "tools/neritic/dive_physics.hpp"
 #include "tools/neritic/dive_served.hpp"
 #include "tools/neritic/dive_told.hpp"
@@ -383,43 +384,10 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
   return whole ? check_finished(flags, *physics) : Status();
 }
 
-Status check_serve_flags(const DiveFlags& flags, const scene::Scene& scene, bool pictures) {
-  if (flags.serve.empty())
-    return flags.keys.empty() ? Status()
-                              : refusal("--keys", "no --serve beside it", "with --serve");
-  if (!flags.replay.empty()) return refusal("--serve", "--replay beside it", "one of the two");
-  if (!PhysicsWorld::needed(scene))
-    return refusal("--serve", "a scene in which nothing moves by physics",
-                   "a scene with [physics] and a vehicle, a diver or an object with inputs");
-  if (!pictures) return refusal("--serve", "a dive without pictures", "neritic serve SCENE");
-  return {};
-}
-
-// Flags that a run without a window or a headset would not look at.
-Status check_flags_of_displays(const DiveFlags& flags) {
-  if (!flags.headless) return {};
-  if (flags.refresh_hz > 0.0 || !flags.bindings.empty())
-    return refusal(flags.refresh_hz > 0.0 ? "--refresh" : "--bindings", "--headless beside it",
-                   "a dive in a headset");
-  if (flags.hud.empty() && !flags.panels && (!flags.diver.empty() || flags.units != "metric"))
-    return refusal(flags.diver.empty() ? "--units" : "--diver", "--headless without --hud",
-                   "with --hud, or a window or headset");
-  return {};
-}
-
 // With every flag but the form of the recording as it is.
 Status run_whole_dive(const DiveFlags& asked) {
   DiveFlags flags = asked;
-  if (flags.seconds && !(std::isfinite(*flags.seconds) && *flags.seconds > 0.0))
-    return refusal("--seconds", fmt::format("{}", *flags.seconds), "a number above 0");
-  if (flags.fast && !flags.headless)
-    return refusal("--fast", "a run in a window", "with --headless (a window follows its screen)");
-  if (flags.display != "auto" && flags.headless)
-    return refusal("--display", "--headless beside it", "one of the two");
-  if (flags.panels && !flags.headless)
-    return refusal("--panels", "a run in a window", "with --headless (a window has them; F2)");
-  NERITIC_TRY_STATUS(check_flags_of_displays(flags));
-  NERITIC_TRY_STATUS(check_replay_flags(flags));
+  NERITIC_TRY_STATUS(check_dive_flags(flags));
   NERITIC_TRY_STATUS(check_step_files(
       flags.files, {{"--screenshot", flags.screenshot}, {"--timeline", flags.timeline}}));
   const Interrupt interrupt;

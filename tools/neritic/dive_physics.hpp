@@ -10,13 +10,6 @@
 
 namespace neritic::tools {
 
-// Whether the flags ask for the physics alone: headless, and nothing that needs a picture.
-bool asks_for_physics_alone(const DiveFlags& flags, const scene::Scene& scene);
-// kBadInput for flags that a replay cannot have.
-Status check_replay_flags(const DiveFlags& flags);
-// kBadInput for flags of physics where there is none, or that exclude each other.
-Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene);
-
 // The scene's physics as the flags want it, with pictures or without: from its start, a saved state
 // or where a recording begins (nullptr: there is none). clock: that paces its thread; nullptr: the
 // host's. Precondition: PhysicsWorld::needed.
