@@ -90,6 +90,15 @@ LimbState next_limbs(const LimbState& before, const LimbTrack& track, const Obje
   return next;
 }
 
+// Bit i: the scene has a file for group i.
+std::uint64_t recorded_groups(const PhysicsHuman& human) {
+  const auto bit = [](DiverGroup group) {
+    return std::uint64_t{1} << static_cast<std::uint64_t>(group);
+  };
+  return (human.recording ? bit(DiverGroup::kBody) : 0) |
+         (human.buttons ? bit(DiverGroup::kButtons) : 0);
+}
+
 // Points of one body, thinned or not: more are seldom near at once.
 constexpr std::size_t kRoomForContacts = 256;
 
@@ -111,6 +120,32 @@ PhysicsState PhysicsWorld::start() const {
     state.vehicles()[i].mission = mission_start(known_state(state, i, 0.0));
   }
   return state;
+}
+
+void PhysicsWorld::apply(PhysicsInputs& inputs, const Sample& sample, std::uint64_t step) const {
+  const Stream& stream = streams_[sample.header.stream];
+  if (const ModemSend* message = std::get_if<ModemSend>(&sample.payload)) {
+    ModemInputs& modem = inputs.modems()[*modems_.find(stream.sort, stream.owner)];
+    modem.queue[modem.asked++ % ModemInputs::kQueued] = *message;
+    return;
+  }
+  if (const GripUse* use = std::get_if<GripUse>(&sample.payload)) {
+    inputs.grips()[*things_.find(stream.sort, stream.owner)].use = *use;
+    return;
+  }
+  if (const RegulatorUse* use = std::get_if<RegulatorUse>(&sample.payload)) {
+    inputs.regulators()[humans_[stream.owner].regulator->place].use = *use;
+    return;
+  }
+  if (stream.sort == OwnerSort::kDiver)
+    testbed::apply(inputs.humans()[stream.owner], sample, step,
+                   recorded_groups(humans_[stream.owner]));
+  else if (stream.sort == OwnerSort::kVehicle)
+    testbed::apply(inputs.vehicles()[stream.owner], sample, step);
+  else
+    testbed::apply(
+        inputs.objects()[stream.owner], sample, step,
+        objects_[stream.owner].limbs ? &inputs.limbs()[*objects_[stream.owner].limbs] : nullptr);
 }
 
 rov::RayQuery PhysicsWorld::rays() const {

@@ -1,5 +1,5 @@
 // Reads and checks once: the vehicles, what is solid, the current (physics_world.hpp); and makes a
-// simulation of them, which samples enter.
+// simulation of them.
 #include "testbed/simulation/physics_world.hpp"
 
 #include <cmath>
@@ -32,15 +32,6 @@ std::string name_of_label(const scene::Scene& scene, std::uint32_t label) {
     if (label >= object.instance && label < object.instance + object.instance_count())
       return object.name;
   return "something";
-}
-
-// Bit i: the scene has a file for group i.
-std::uint64_t recorded_groups(const PhysicsHuman& human) {
-  const auto bit = [](DiverGroup group) {
-    return std::uint64_t{1} << static_cast<std::uint64_t>(group);
-  };
-  return (human.recording ? bit(DiverGroup::kBody) : 0) |
-         (human.buttons ? bit(DiverGroup::kButtons) : 0);
 }
 
 }  // namespace
@@ -242,32 +233,6 @@ Status PhysicsWorld::check_start(const scene::Scene& scene, const std::string& n
                        scene.path, name, -contact.gap_m,
                        name_of_label(scene, contact.surface.label));
   return {};
-}
-
-void PhysicsWorld::apply(PhysicsInputs& inputs, const Sample& sample, std::uint64_t step) const {
-  const Stream& stream = streams_[sample.header.stream];
-  if (const ModemSend* message = std::get_if<ModemSend>(&sample.payload)) {
-    ModemInputs& modem = inputs.modems()[*modems_.find(stream.sort, stream.owner)];
-    modem.queue[modem.asked++ % ModemInputs::kQueued] = *message;
-    return;
-  }
-  if (const GripUse* use = std::get_if<GripUse>(&sample.payload)) {
-    inputs.grips()[*things_.find(stream.sort, stream.owner)].use = *use;
-    return;
-  }
-  if (const RegulatorUse* use = std::get_if<RegulatorUse>(&sample.payload)) {
-    inputs.regulators()[humans_[stream.owner].regulator->place].use = *use;
-    return;
-  }
-  if (stream.sort == OwnerSort::kDiver)
-    testbed::apply(inputs.humans()[stream.owner], sample, step,
-                   recorded_groups(humans_[stream.owner]));
-  else if (stream.sort == OwnerSort::kVehicle)
-    testbed::apply(inputs.vehicles()[stream.owner], sample, step);
-  else
-    testbed::apply(
-        inputs.objects()[stream.owner], sample, step,
-        objects_[stream.owner].limbs ? &inputs.limbs()[*objects_[stream.owner].limbs] : nullptr);
 }
 
 const rov::SensorReadings* PhysicsWorld::readings(const PhysicsState& state,

@@ -2,7 +2,6 @@
 // scene's sonars and timings; or, with --headless, the same frames without a window and a summary
 // of their times.
 #include <algorithm>
-#include <cmath>
 
 #include "engine/core/log.hpp"
 #include "engine/core/refusal.hpp"
