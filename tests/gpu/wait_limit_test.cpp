@@ -42,10 +42,14 @@ TEST_F(WaitLimit, AFrameBeyondItIsALostDevice) {
   NERITIC_ASSERT_OK(const Buffer buffer, Buffer::create(*slow, {"large", kLarge_bytes,
                                                                 VK_BUFFER_USAGE_TRANSFER_DST_BIT}));
   NERITIC_ASSERT_OK(const auto frames, Frames::create(*slow));
-  NERITIC_ASSERT_OK(Commands* const commands, frames->begin());
-  vkCmdFillBuffer(commands->handle(), buffer.handle(), 0, VK_WHOLE_SIZE, 7);
-  NERITIC_ASSERT_OK(const std::uint64_t done, frames->submit());
-  const Status status = frames->wait(done);
+  Status status;
+  // On a busy machine a frame may be done before it is waited for.
+  for (int i = 0; i < 20 && status.ok(); ++i) {
+    NERITIC_ASSERT_OK(Commands* const commands, frames->begin());
+    vkCmdFillBuffer(commands->handle(), buffer.handle(), 0, VK_WHOLE_SIZE, 7);
+    NERITIC_ASSERT_OK(const std::uint64_t done, frames->submit());
+    status = frames->wait(done);
+  }
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().code, ErrorCode::kDeviceLost);
   EXPECT_THAT(status.error().message, HasSubstr("did not finish a frame in 1e-09 s"));

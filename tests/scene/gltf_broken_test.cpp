@@ -3,7 +3,7 @@
 // validator's. To be run under AddressSanitizer as well (preset asan-ubsan).
 #include <gtest/gtest.h>
 
-#include <chrono>
+#include <ctime>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -71,9 +71,9 @@ const std::set<std::string> kMustRefuse = {"ACCESSOR_INDEX_OOB",
 
 void check_case(const BrokenCase& one) {
   SCOPED_TRACE(one.file.string());
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // processor time: a neighbour costs none
   const auto model = scene::load_gltf(one.file);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+  EXPECT_LT(std::clock() - start, 5 * CLOCKS_PER_SEC);
   if (model.ok()) {
     EXPECT_EQ(broken_promise(*model), "");
     EXPECT_TRUE(one.errors.empty() || !model->notes.empty()) << "shown without a word";

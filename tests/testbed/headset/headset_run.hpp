@@ -67,7 +67,7 @@ class HeadsetRun : public ::testing::Test {
     std::vector<SampleSource*> sources;
     if (view->wearer()) sources.push_back(view->wearer());
     if (source_) sources.push_back(source_);
-    const TimeNs end_ns = now_ns() + 60'000'000'000;
+    const TimeNs end_ns = now_ns() + 250'000'000'000;
     Loop loop({.clock = Clock::real(0.0, 1.0 / 90.0),
                .physics = physics_,
                .sensors = LoopSensors{.session = session.get()},

@@ -117,7 +117,10 @@ TEST_F(LoopTest, AThreadGivesItsSinksTheSameStatesAsLockStep) {
   Listener heard(live->world()), expected(offline->world());
   live->observe([&](const auto& step) { ASSERT_TRUE(heard.accept(step, {}).ok()); });
   live->start();
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  for (int look = 0; look < 500 && live->shown_snapshot().step < 24; ++look) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    live->follow(now_ns(), 0.0);
+  }
   live->stop();
   Loop loop({.clock = Clock::simulated(0.0, offline->world().step_s()),
              .physics = offline.get(),

@@ -52,13 +52,13 @@ class ServedWorld {
 };
 
 RemoteInstrumentsOptions quick(const Address& address) {
-  return {.remote = {.socket = {.address = address}, .name = "hud", .patience_s = 5.0},
+  return {.remote = {.socket = {.address = address}, .name = "hud", .patience_s = 30.0},
           .rate_hz = 50.0,
           .lost_after_s = 0.5};
 }
 
 bool comes(const std::function<bool()>& is) {
-  for (int i = 0; i < 500; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(20)))
+  for (int i = 0; i < 1500; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(20)))
     if (is()) return true;
   return false;
 }
@@ -69,8 +69,12 @@ TEST(RemoteInstrumentsTest, NumbersAreTheStatesAndAServerThatComesBackIsReadAgai
   auto connected = RemoteInstruments::connect(quick(address));
   ASSERT_TRUE(connected.ok()) << connected.error().message;
   RemoteInstruments& remote = **connected;
-  ASSERT_TRUE(comes([&] { return remote.read().data.time_s > 0.0; }));
-  const InstrumentNews near = remote.read();
+  // A busy machine may hold the reader up for longer than lost_after_s.
+  InstrumentNews near;
+  ASSERT_TRUE(comes([&] {
+    near = remote.read();
+    return near.data.time_s > 0.0 && !near.data.link_lost;
+  }));
   EXPECT_EQ(near.data.time_s, server->wanted().time_s);
   const NamedNumbers numbers = numbers_of(near.data);
   ASSERT_EQ(numbers.size(), server->wanted().numbers.size());
@@ -87,8 +91,11 @@ TEST(RemoteInstrumentsTest, NumbersAreTheStatesAndAServerThatComesBackIsReadAgai
   EXPECT_EQ(near.streams.front().health, hud::Health::kGood);
 
   server.reset();
-  ASSERT_TRUE(comes([&] { return remote.lost(); }));
-  const InstrumentNews lost = remote.read();
+  InstrumentNews lost;
+  ASSERT_TRUE(comes([&] {
+    lost = remote.read();
+    return remote.lost() && lost.data.link_lost && lost.data.time_s > near.data.time_s;
+  }));
   EXPECT_TRUE(lost.data.link_lost);
   EXPECT_TRUE(std::isnan(lost.data.depth_m));
   EXPECT_GT(lost.data.time_s, near.data.time_s);
@@ -96,8 +103,7 @@ TEST(RemoteInstrumentsTest, NumbersAreTheStatesAndAServerThatComesBackIsReadAgai
   EXPECT_TRUE(hud::step_alarms({}, lost.data).on(hud::Alarm::kLink));
 
   server = std::make_unique<ServedWorld>(address.port, 960);
-  ASSERT_TRUE(comes([&] { return !remote.lost(); }));
-  EXPECT_EQ(remote.read().data.time_s, server->wanted().time_s);
+  ASSERT_TRUE(comes([&] { return remote.read().data.time_s == server->wanted().time_s; }));
   EXPECT_GE(remote.connections(), 2u);
 }
 
