@@ -17,7 +17,7 @@ foreach(entry ${SUITE_PROGRAMS})
   foreach(suite ${suites})
     string(REGEX REPLACE "[\n.]" "" suite "${suite}")
     add_test(${prefix}.${suite} ${program} "--gtest_filter=${suite}.*" --gtest_color=no)
-    set_tests_properties(${prefix}.${suite} PROPERTIES TIMEOUT 600
+    set_tests_properties(${prefix}.${suite} PROPERTIES TIMEOUT 900
       SKIP_REGULAR_EXPRESSION "PASSED  \\] 0 tests\\.\n(\\[  SKIPPED \\][^\n]*\n?)+$")
   endforeach()
 endforeach()

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/diver/swims.hpp"
+#include "tests/support/support.hpp"
 
 namespace neritic::diver {
 namespace {
@@ -45,14 +46,15 @@ Hover hover_after_a_swim(double depth_m, double current_m_s, double seconds) {
 // empties would carry him up. Back, arms and treading fins keep him level, either dump valve lets
 // gas out, and fins bring him back to the place.
 TEST(Swimmer, HoversLevelAtItsPlaceWhileTheTankEmpties) {
-  for (const double depth_m : {6.0, 15.0, 30.0}) {
-    const Hover hover = hover_after_a_swim(depth_m, 0.0, 900.0);
+  const bool thorough = test::is_thorough();
+  for (const double depth_m : thorough ? std::vector{6.0, 15.0, 30.0} : std::vector{6.0, 30.0}) {
+    const Hover hover = hover_after_a_swim(depth_m, 0.0, thorough ? 900.0 : 600.0);
     EXPECT_LT(hover.off_depth_m, 0.35) << depth_m;
     EXPECT_LT(hover.pitch_deg, 15.0) << depth_m;
     EXPECT_LT(hover.away_m, 14.0) << depth_m;
   }
-  for (const double current_m_s : {-0.11, 0.3}) {
-    const Hover hover = hover_after_a_swim(15.0, current_m_s, 600.0);
+  for (const double current_m_s : thorough ? std::vector{-0.11, 0.3} : std::vector{0.3}) {
+    const Hover hover = hover_after_a_swim(15.0, current_m_s, thorough ? 600.0 : 300.0);
     EXPECT_LT(hover.off_depth_m, 0.4) << current_m_s;
     EXPECT_LT(hover.pitch_deg, 10.0) << current_m_s;
     EXPECT_LT(hover.away_m, 6.0) << current_m_s;
@@ -62,9 +64,11 @@ TEST(Swimmer, HoversLevelAtItsPlaceWhileTheTankEmpties) {
 // Little pressure: the suit lifts hips and legs, so that the jacket has to lift less at the chest.
 // At 5 m that turns a straight body head down by 4 N m, as much as the back's bend can hold.
 TEST(Swimmer, HoversLevelInShallowWaterWithAFullTank) {
-  for (const auto& [depth_m, current_m_s] :
-       {std::pair{5.0, 0.0}, {5.0, 0.1}, {5.0, -0.15}, {5.0, 0.2}, {3.0, 0.15}}) {
-    const Hover hover = hover_after_a_swim(depth_m, current_m_s, 300.0);
+  std::vector<std::pair<double, double>> cases{{5.0, 0.0}, {5.0, 0.2}, {3.0, 0.15}};
+  if (test::is_thorough()) cases.insert(cases.end(), {{5.0, 0.1}, {5.0, -0.15}});
+  for (const auto& [depth_m, current_m_s] : cases) {
+    const Hover hover =
+        hover_after_a_swim(depth_m, current_m_s, test::is_thorough() ? 300.0 : 200.0);
     EXPECT_LT(hover.off_depth_m, 0.4) << depth_m << " " << current_m_s;
     EXPECT_LT(hover.pitch_deg, 10.0) << depth_m << " " << current_m_s;
     EXPECT_LT(hover.away_m, 12.0) << depth_m << " " << current_m_s;
@@ -123,7 +127,7 @@ TEST(Swimmer, HoversLevelInWhateverGear) {
                         {"small", 15.0, small}}) {
     const Body body = make_body(c.diver).value();
     Swim s = begin(body, {0.0, 0.0, c.depth_m}, 0.0);
-    const HoverTrack hover = track_hover(body, s, c.depth_m, 300.0);
+    const HoverTrack hover = track_hover(body, s, c.depth_m, test::is_thorough() ? 300.0 : 120.0);
     EXPECT_GT(hover.highest_m, c.depth_m - 0.5) << c.name;
     EXPECT_LT(hover.deepest_m, c.depth_m + 0.5) << c.name;
     EXPECT_LT(hover.rise_m_min, 3.0) << c.name;
@@ -158,7 +162,8 @@ TEST(Swimmer, ComesBackNoFasterThanWhoKeepsBesideCanFollow) {
     std::vector<Vec3> beside;  // each two seconds
     double away_m = 0.0;
     int steps = 0;
-    swim_for(body, s, {{0.0, 0.0, 14.4}, 0.0}, 480.0, [&](const HumanState& state) {
+    const double seconds = test::is_thorough() ? 480.0 : 240.0;
+    swim_for(body, s, {{0.0, 0.0, 14.4}, 0.0}, seconds, [&](const HumanState& state) {
       const Vec3& p = state.root.position_ned_m;
       const double heading = attitude_of(state.root.attitude).heading_rad;
       if (steps++ % 480 == 0)

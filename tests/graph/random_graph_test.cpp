@@ -8,11 +8,12 @@
 
 #include "engine/graph/access.hpp"
 #include "simulator.hpp"
+#include "tests/support/support.hpp"
 
 namespace neritic::graph {
 namespace {
 
-constexpr std::uint64_t kGraphs = 4000;
+const std::uint64_t kGraphs = test::is_thorough() ? 4000 : 1000;
 
 Plan plan_of(const RandomGraph& random) {
   Result<Plan> plan = plan_with(random.maker.graph, random.needs);

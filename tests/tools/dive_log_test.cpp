@@ -61,47 +61,51 @@ mission = { waypoints = [ { position_m = [3, -150, -1] } ] }
   std::string page_;
 };
 
-TEST_F(DiveLog, ThePageHasEveryColumnAndNoOther) {
-  const std::string log = read_text(folder_ / "log.csv").value();
-  std::istringstream heading(log.substr(0, log.find('\n')));
-  Words columns;
-  for (std::string name; std::getline(heading, name, ',');) {
-    EXPECT_TRUE(columns.insert(name).second) << "twice: " << name;
-    for (const char* kind : {"command_", "thrust_"})
-      if (name.starts_with(kind) && name.ends_with("_n")) columns.erase(name);
-  }
-  columns.insert({"command_N_n", "thrust_N_n"});
-  EXPECT_EQ(words_of(page_, "## The log", "## The summary", true), columns);
-}
-
-TEST_F(DiveLog, ThePageHasEveryKeyAndNoOther) {
-  auto json = parse_json(read_text(folder_ / "out.json").value());
-  ASSERT_TRUE(json.ok()) << json.error().message;
-  // Groups of inputs are keys of their names.
-  for (const char* kind : {"vehicles", "humans"})
-    for (auto& one : (*json)[kind]) {
-      auto groups = nlohmann::json::array();
-      for (const auto& group : one["inputs"]) groups.push_back(group);
-      one["inputs"] = groups;
+// One dive for the log, the summary and the picture's data, since it costs most of the test.
+TEST_F(DiveLog, ThePageHasEveryColumnAndKeyAndNoOther) {
+  {
+    SCOPED_TRACE("columns of the log");
+    const std::string log = read_text(folder_ / "log.csv").value();
+    std::istringstream heading(log.substr(0, log.find('\n')));
+    Words columns;
+    for (std::string name; std::getline(heading, name, ',');) {
+      EXPECT_TRUE(columns.insert(name).second) << "twice: " << name;
+      for (const char* kind : {"command_", "thrust_"})
+        if (name.starts_with(kind) && name.ends_with("_n")) columns.erase(name);
     }
-  const auto& dangers = (*json)["humans"][0]["dangers"];
-  for (const auto& [danger, what] : dangers.items()) EXPECT_FALSE(what.is_null()) << danger;
-  Words keys;
-  gather_keys(*json, keys);
-  EXPECT_EQ(words_of(page_, "## The summary", "\n## ", false), keys);
-}
-
-TEST_F(DiveLog, ThePageHasEveryKeyOfThePicturesDataAndNoOther) {
-  const auto json = parse_json(read_text(folder_ / "dive.plot.json").value());
-  ASSERT_TRUE(json.ok()) << json.error().message;
-  Words keys;
-  gather_keys(*json, keys);
-  const std::string heading = "## The picture's data";
-  const Words all = words_of(page_, heading, "\n## ", false);
-  for (const std::string& key : keys) EXPECT_TRUE(all.contains(key)) << key;
-  for (const std::string& key : words_of(page_, heading, "\n## ", true))
-    EXPECT_TRUE(keys.contains(key)) << key;
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "dive.png"));
+    columns.insert({"command_N_n", "thrust_N_n"});
+    EXPECT_EQ(words_of(page_, "## The log", "## The summary", true), columns);
+  }
+  {
+    SCOPED_TRACE("keys of the summary");
+    auto json = parse_json(read_text(folder_ / "out.json").value());
+    ASSERT_TRUE(json.ok()) << json.error().message;
+    // Groups of inputs are keys of their names.
+    for (const char* kind : {"vehicles", "humans"})
+      for (auto& one : (*json)[kind]) {
+        auto groups = nlohmann::json::array();
+        for (const auto& group : one["inputs"]) groups.push_back(group);
+        one["inputs"] = groups;
+      }
+    const auto& dangers = (*json)["humans"][0]["dangers"];
+    for (const auto& [danger, what] : dangers.items()) EXPECT_FALSE(what.is_null()) << danger;
+    Words keys;
+    gather_keys(*json, keys);
+    EXPECT_EQ(words_of(page_, "## The summary", "\n## ", false), keys);
+  }
+  {
+    SCOPED_TRACE("keys of the picture's data");
+    const auto json = parse_json(read_text(folder_ / "dive.plot.json").value());
+    ASSERT_TRUE(json.ok()) << json.error().message;
+    Words keys;
+    gather_keys(*json, keys);
+    const std::string heading = "## The picture's data";
+    const Words all = words_of(page_, heading, "\n## ", false);
+    for (const std::string& key : keys) EXPECT_TRUE(all.contains(key)) << key;
+    for (const std::string& key : words_of(page_, heading, "\n## ", true))
+      EXPECT_TRUE(keys.contains(key)) << key;
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "dive.png"));
+  }
 }
 
 }  // namespace

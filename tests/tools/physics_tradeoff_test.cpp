@@ -133,7 +133,7 @@ TEST(PhysicsTradeoff, WhatAnErrorChoosesHoldsOnEveryFlight) {
   flights.push_back(bounce_flight(5.0));
   flights.push_back(slide_flight(5.0));
   flights.push_back(roll_flight(5.0));
-  for (const double asked_m : {3.5e-2, 1e-2, 3e-3, 1e-3, 4.5e-4}) {
+  for (const double asked_m : {3.5e-2, 3e-3, 4.5e-4}) {
     const auto choice = rov::cheapest_step(asked_m, true);
     ASSERT_TRUE(choice.ok()) << choice.error().message;
     for (const Flight& flight : flights)

@@ -41,7 +41,9 @@ class SonarFolder : public ::testing::Test {
   fs::path normal_file(int i) { return folder_ / "n" / ("normal_" + name(i) + ".npy"); }
   fs::path result(int i) { return folder_ / "out" / name(i); }
   Words settings() {
-    return Words{"--intrinsics", "20,20,16,12", "--bins", "32,16,16"} + test::by_any_method();
+    Words all = Words{"--intrinsics", "20,20,16,12", "--bins", "32,16,16"} + test::by_any_method();
+    if (!pictures_) all.push_back("--no-pictures");
+    return all;
   }
   Words words(const Words& more = {}) {
     return Words{"imaging",
@@ -72,13 +74,15 @@ class SonarFolder : public ::testing::Test {
     return text.ok() ? *text : "";
   }
   std::string skipped() { return list_of("skipped.csv"); }
+  bool pictures_ = false;  // which cost more than all else
   test::ScratchFolder folder_;
 };
 
 TEST_F(SonarFolder, GivesEachFrameWhatItGivesAlone) {
-  write_frames(7);
+  pictures_ = true;
+  write_frames(4);
   expect_done(words({"--workers", "3"}));
-  for (int i = 0; i < 7; ++i) {
+  for (int i = 0; i < 4; ++i) {
     const fs::path alone = folder_ / ("alone_" + name(i));
     expect_done(Words{"imaging", "--depth", depth_file(i).string(), "--normals",
                       normal_file(i).string(), "--out", alone.string()} +
@@ -87,8 +91,8 @@ TEST_F(SonarFolder, GivesEachFrameWhatItGivesAlone) {
       EXPECT_EQ(read_text(result(i) / file).value(), read_text(alone / file).value())
           << i << " " << file;
   }
-  EXPECT_NE(numbers_of(result(0) / "sonar.npy"), numbers_of(result(6) / "sonar.npy"));
-  EXPECT_EQ(run_facts()["made"], 7);
+  EXPECT_NE(numbers_of(result(0) / "sonar.npy"), numbers_of(result(3) / "sonar.npy"));
+  EXPECT_EQ(run_facts()["made"], 4);
   EXPECT_EQ(skipped(), "");
   for (const auto& entry : fs::directory_iterator(folder_ / "out"))
     EXPECT_NE(entry.path().filename().string().front(), '.') << entry.path();
@@ -192,6 +196,7 @@ TEST_F(SonarFolder, ADamagedResultIsMadeAgain) {
 }
 
 TEST_F(SonarFolder, AResultOfWhichAFileIsCutOrMissingIsMadeAgain) {
+  pictures_ = true;
   write_frames(4);
   expect_done(words());
   const std::string whole = read_text(result(0) / "sonar.npy").value();
@@ -229,6 +234,7 @@ TEST_F(SonarFolder, EachFrameHasNoiseOfItsOwn) {
 }
 
 TEST_F(SonarFolder, OtherSettingsAreRefusedUnlessToOverwrite) {
+  pictures_ = true;
   write_frames(3);
   expect_done(words());
   const std::string before = read_text(result(2) / "sonar.npy").value();
@@ -394,12 +400,12 @@ TEST_F(SonarFolder, PicturesMakeASideScanWaterfall) {
 
 // To measure with: NERITIC_FRAMES, another number of frames; NERITIC_FRAME_SIZE=large, 640 x 480
 // pixels and 512 x 500 x 500 bins (5 MB a frame of scratch disk).
-TEST_F(SonarFolder, AThousandFramesGoThrough) {
+TEST_F(SonarFolder, ManyFramesGoThrough) {
   const char *asked = std::getenv("NERITIC_FRAMES"), *size = std::getenv("NERITIC_FRAME_SIZE");
-  const int count = asked != nullptr ? std::atoi(asked) : 1000;
+  const int count = asked != nullptr ? std::atoi(asked) : test::is_thorough() ? 1000 : 250;
   const bool large = size != nullptr && std::string(size) == "large";
   write_frames(count, large ? 640 : 160, large ? 480 : 120);
-  Words all = words({"--no-pictures"});
+  Words all = words();
   *(std::find(all.begin(), all.end(), "--bins") + 1) = large ? "512,500,500" : "128,64,64";
   *(std::find(all.begin(), all.end(), "--intrinsics") + 1) =
       large ? "320,320,320,240" : "80,80,80,60";

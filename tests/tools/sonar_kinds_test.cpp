@@ -77,8 +77,9 @@ TEST_P(RealSets, GoThroughEveryKind) {
   const test::ScratchFolder folder;
   const char* kept = std::getenv("NERITIC_KEEP");  // a folder, to look at the pictures
   const fs::path out = kept != nullptr ? fs::path(kept) / set.name / kind : folder / "out";
-  const Status done = sonar_command(
-      Words{kind, "--range", set.range, "--out", out.string(), "--overwrite"} + words);
+  Words all{kind, "--range", set.range, "--out", out.string(), "--overwrite"};
+  if (kept == nullptr) all.push_back("--no-pictures");
+  const Status done = sonar_command(all + words);
   ASSERT_TRUE(done.ok()) << done.error().message;
   const auto run = parse_json(read_text(out / "run.json").value()).value();
   EXPECT_EQ(run["skipped"], 0);
@@ -143,7 +144,7 @@ class Wall : public ::testing::Test {
   }
   std::string file(const std::string& name) { return (folder_ / name).string(); }
   Words command(const std::string& kind, const Words& more) {
-    return Words{kind, "--out", file("out"), "--range", "1,4"} + more;
+    return Words{kind, "--out", file("out"), "--range", "1,4", "--no-pictures"} + more;
   }
   std::vector<double> image(const Words& all) {
     const Status done = sonar_command(all);
@@ -187,6 +188,8 @@ class Wall : public ::testing::Test {
   test::ScratchFolder folder_;
 };
 
+// Every convention by an imaging sonar, and by one of the other kinds in turn: all read images
+// alike.
 TEST_F(Wall, SoundsTheSameInEveryConvention) {
   const Words numbers{"--intrinsics", "60,60,32,24"};
   const Words conventions[] = {
@@ -208,10 +211,13 @@ TEST_F(Wall, SoundsTheSameInEveryConvention) {
             file("k.json")},
       Words{"--depth", file("planar.npy"), "--normals", file("z.npy"), "--intrinsics",
             "60,60,31.5,23.5", "--pixel-centers", "integer"}};
-  for (const char* kind : kKinds) {
+  for (std::size_t k = 0; k < std::size(kKinds); ++k) {
+    const char* const kind = kKinds[k];
     const std::vector<double> expected = image(command(kind, images()));
     ASSERT_GT(sum(expected), 0.0) << kind;
-    for (const Words& convention : conventions) {
+    for (std::size_t i = 0; i < std::size(conventions); ++i) {
+      if (k > 0 && 1 + i % 3 != k) continue;
+      const Words& convention = conventions[i];
       const std::vector<double> found = image(command(kind, convention));
       ASSERT_EQ(found.size(), expected.size());
       EXPECT_NEAR(sum(found) / sum(expected), 1.0, 0.02) << kind << " " << convention[1];
@@ -255,9 +261,10 @@ TEST_F(Wall, OfObliqueNormalsSoundsTheSameInEveryConvention) {
       for (std::size_t i = 0; i < expected.size(); ++i) moved += std::abs(found[i] - expected[i]);
       return moved / sum(expected);
     };
-    EXPECT_LT(differs(words("planar.npy", "opencv.npy", "opencv")), 1e-6) << kind;
-    EXPECT_LT(differs(words("planar.npy", "ros.npy", "ros")), 1e-6) << kind;
     EXPECT_LT(differs(words("depth.exr", "opencv.exr", "opencv")), 1e-6) << kind;
+    EXPECT_LT(differs(words("planar.npy", "ros.npy", "ros")), 1e-6) << kind;
+    if (std::string(kind) != "imaging") continue;  // arrays and pictures are read alike for all
+    EXPECT_LT(differs(words("planar.npy", "opencv.npy", "opencv")), 1e-6) << kind;
     EXPECT_LT(differs(words("planar.npy", "oblique.png", "opengl")), 0.03) << kind;  // 8 bits
   }
 }

@@ -8,6 +8,7 @@
 #include "testbed/motion/live_physics.hpp"
 #include "testbed/sensors/session.hpp"
 #include "tests/support/gpu_fixture.hpp"
+#include "tests/support/support.hpp"
 #include "tests/testbed/wall_flight.hpp"
 
 namespace neritic::testbed {
@@ -94,8 +95,8 @@ TEST_F(PhysicsRender, DrawingChangesNoBitOfThePhysics) {
   EXPECT_GT(simulation->newest().step, 400u);
 }
 
-// With the renderer on and off in turn, a hundred times, beside busy cores.
-TEST_F(PhysicsRender, AHundredRunsDrawnAndNotHaveTheSameHashes) {
+// With the renderer on and off in turn, beside busy cores (tools/repeat: a hundred times).
+TEST_F(PhysicsRender, RunsDrawnAndNotHaveTheSameHashesBesideBusyCores) {
   std::vector<std::jthread> load;
   for (int i = 0; i < 2; ++i)
     load.emplace_back([](const std::stop_token& stop) {
@@ -105,7 +106,7 @@ TEST_F(PhysicsRender, AHundredRunsDrawnAndNotHaveTheSameHashes) {
   auto session = Session::create(device(), scene);
   ASSERT_TRUE(session.ok()) << session.error().message;
   std::uint64_t first = 0;
-  for (int run = 0; run < 100; ++run) {
+  for (int run = 0; run < (test::is_thorough() ? 100 : 16); ++run) {
     auto live = LivePhysics::create(scene, LivePhysics::Pace::kPicture);
     ASSERT_TRUE(live.ok());
     (*live)->start();
