@@ -61,6 +61,13 @@ struct DiveData {
   double heart_bpm = kUnknown, breath_bpm = kUnknown;
   double lungs_m3 = kUnknown;
 
+  // The condition as the scene models it (diver/condition.hpp), each part where the scene names it.
+  // For an operator: the diver does not notice it. oxygen_dose: share of what this diver bears;
+  // slowing: times as long as when rested; strength: share of the work.
+  double saturation = kUnknown, co2_mmhg = kUnknown, narcotic_depth_m = kUnknown;
+  double oxygen_dose = kUnknown, core_c = kUnknown, slowing = kUnknown, strength = kUnknown;
+  bool unconscious = false;
+
   static constexpr std::array<double, diver::kCompartments> filled_tissues() {
     std::array<double, diver::kCompartments> out{};
     for (double& bar : out) bar = kUnknown;

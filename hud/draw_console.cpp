@@ -167,6 +167,50 @@ void draw_trace(Painter& p, const Box& box, const char* name, std::string_view v
   flush();
 }
 
+// Over heart and breath, as wide as both; nothing where the scene does not model it.
+void draw_condition(Painter& p, const Shown& s) {
+  const ShownCondition& c = s.condition;
+  if (!c.known) return;
+  constexpr double kX = 332.0, kY = 462.0, kW = 616.0;
+  p.plate({kX, kY, kW, 90.0}, 14.0, kPlate);
+  title(p, kX + 14.0, kY + 24.0, "CONDITION");
+  if (c.unconscious) {
+    const Tone danger{AlarmLevel::kDanger, s.flash};
+    p.plate({kX + 330.0, kY + 8.0, kW - 342.0, 24.0}, 6.0, plate_of(danger));
+    p.text(kX + 330.0 + 0.5 * (kW - 342.0), kY + 26.0, 13.0, "UNCONSCIOUS: RESCUE", ink_of(danger),
+           Align::kCenter, Face::kBold);
+  } else {
+    p.text(kX + kW - 14.0, kY + 24.0, 11.0, "modelled; not noticed by the diver", kLabel,
+           Align::kRight);
+  }
+  const UnitNames unit = unit_names(s.units);
+  const char* degree = s.units == Units::kImperial ? "F" : "C";
+  struct Part {
+    double wide;
+    const char* label;
+    std::string_view value;
+    const char* unit;
+  };
+  const Part parts[] = {{74.0, "O2 SAT", c.saturation.view(), "%"},
+                        {106.0, "CO2 mmHg", c.co2.view(), ""},
+                        {96.0, "NARCOTIC", c.narcotic.view(), unit.depth},
+                        {80.0, "O2 DOSE", c.oxygen.view(), "%"},
+                        {74.0, "CORE", c.core.view(), degree},
+                        {76.0, "REACTS", c.slowing.view(), "x"},
+                        {96.0, "STRENGTH", c.strength.view(), "%"}};
+  double x = kX + 7.0;
+  for (std::size_t i = 0; i < std::size(parts); x += parts[i].wide, ++i) {
+    const bool alarmed = (c.cautions & (1u << i)) != 0;
+    p.cell({{x, kY + 36.0, parts[i].wide - 2.0, 50.0},
+            parts[i].label,
+            parts[i].value,
+            parts[i].unit,
+            18.0,
+            12.0,
+            {alarmed ? AlarmLevel::kCaution : AlarmLevel::kOff, false}});
+  }
+}
+
 // A ring with four ticks; the words stand on a plate of their own.
 void draw_gaze(Painter& p, const Shown& s) {
   const double x = 1.280 * s.gaze_x, y = 0.720 * s.gaze_y;
@@ -191,6 +235,7 @@ void draw_console(Painter& p, const Shown& s) {
   p.plate({490.0, 16.0, 300.0, 56.0}, 14.0, kPlate);
   p.compass({502.0, 22.0, 276.0, 46.0}, s, 14.0);
   if (any_alarm(s)) p.alarm_band({400.0, 80.0, 480.0, 60.0}, s, 20.0);
+  draw_condition(p, s);
   draw_trace(p, {332.0, 560.0, 304.0, 144.0}, "HEART", s.heart.view(), "beats/min", kHeartTrace_bpm,
              s.heart_trace);
   draw_trace(p, {644.0, 560.0, 304.0, 144.0}, "BREATH", s.breath.view(), "breaths/min",

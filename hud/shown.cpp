@@ -80,6 +80,39 @@ void show_compass_and_tissues(const DiveData& d, Shown& out) {
   for (std::size_t i = 0; i < out.tissues.size(); ++i) out.tissues[i] = bar_step(d.tissues[i]);
 }
 
+FixedText percent(double share) {
+  return std::isnan(share) ? FixedText("--") : FixedText::of("{:.0f}", 100.0 * share);
+}
+
+// Cautions begin where the effects do (diver/condition.hpp); oxygen's at half of what the diver
+// bears.
+ShownCondition condition_of(const DiveData& d, Units units) {
+  ShownCondition out;
+  out.known = d.unconscious || std::isfinite(d.slowing);
+  if (!out.known) return out;
+  const bool feet = units == Units::kImperial;
+  out.unconscious = d.unconscious;
+  out.saturation = percent(d.saturation);
+  out.co2 = std::isnan(d.co2_mmhg) ? FixedText("--") : FixedText::of("{:.0f}", d.co2_mmhg);
+  out.narcotic = depth_text(d.narcotic_depth_m, units);
+  out.oxygen = percent(d.oxygen_dose);
+  if (std::isnan(d.core_c))
+    out.core = "--";
+  else
+    out.core = FixedText::of("{:.1f}", feet ? 32.0 + 1.8 * d.core_c : d.core_c);
+  out.slowing = std::isnan(d.slowing) ? FixedText("--") : FixedText::of("{:.2f}", d.slowing);
+  out.strength = percent(d.strength);
+  const bool cautions[] = {d.saturation<0.82, d.co2_mmhg> 51.0,
+                           d.narcotic_depth_m > 30.0,
+                           d.oxygen_dose > 0.5,
+                           d.core_c < 36.0,
+                           d.slowing >= 1.2,
+                           d.strength < 0.9};
+  for (std::size_t i = 0; i < std::size(cautions); ++i)
+    if (cautions[i]) out.cautions = static_cast<std::uint8_t>(out.cautions | (1u << i));
+  return out;
+}
+
 void show_operator(const DiveData& d, Units units, const Minute& minute, const OperatorData& about,
                    Shown& out) {
   out.jacket = litres_text(d.jacket_m3, units);
@@ -89,6 +122,7 @@ void show_operator(const DiveData& d, Units units, const Minute& minute, const O
   out.net_known = std::isfinite(d.net_weight_n);
   out.sinks = d.net_weight_n > 0.0;
   out.buttons = d.buttons;
+  out.condition = condition_of(d, units);
   out.heart = beats_text(d.heart_bpm);
   out.breath = beats_text(d.breath_bpm);
   for (std::size_t i = 0; i < Minute::kSamples; ++i) {
@@ -123,7 +157,7 @@ Shown shown_of(LayoutKind layout, Units units, const DiveData& data, const Alarm
   out.alarms = alarms.level;
   const bool danger = std::ranges::any_of(
       alarms.level, [](AlarmLevel level) { return level == AlarmLevel::kDanger; });
-  out.flash = danger && std::fmod(std::abs(data.time_s), 1.0) >= 0.5;
+  out.flash = (danger || out.condition.unconscious) && std::fmod(std::abs(data.time_s), 1.0) >= 0.5;
   return out;
 }
 

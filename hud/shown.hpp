@@ -35,6 +35,15 @@ inline constexpr int kBarSteps = 60;          // of tissues and jacket
 inline constexpr double kAscentStep_m_min = 3.0;
 inline constexpr int kAscentSteps = 6;
 
+// The diver's condition, where it is known: texts, and which of them slow the diver (bits, in their
+// order).
+struct ShownCondition {
+  bool known = false, unconscious = false;
+  FixedText saturation, co2, narcotic, oxygen, core, slowing, strength;
+  std::uint8_t cautions = 0;
+  bool operator==(const ShownCondition&) const = default;
+};
+
 struct Shown {
   Units units = Units::kMetric;
   FixedText depth, deepest, dive_time, no_stop, ceiling, stop, stop_min, to_surface;
@@ -49,6 +58,7 @@ struct Shown {
   std::array<std::uint8_t, diver::kCompartments> tissues{};
   std::uint8_t jacket_step = kNoStep;
   std::uint64_t buttons = 0;
+  ShownCondition condition;
   std::array<AlarmLevel, kAlarms> alarms{};
   bool flash = false;  // the half of a second in which a danger is drawn in its other colours
   // 0: not known; 1 to 255 from a trace's lower to its upper end.

@@ -6,6 +6,7 @@
 #include "diver/kinematics.hpp"
 #include "diver/reach.hpp"
 #include "testbed/samples/authority_words.hpp"
+#include "testbed/simulation/diver_condition.hpp"
 #include "testbed/simulation/human_readings.hpp"
 
 namespace neritic::testbed {
@@ -72,6 +73,22 @@ void read_body(const PhysicsHuman& human, const HumanPhysics& state, hud::DiveDa
   out.lungs_m3 = diver.life.lungs.volume_m3;
 }
 
+void read_condition(const PhysicsHuman& human, const HumanPhysics& state, const PhysicsState& all,
+                    hud::DiveData& out) {
+  const ConditionReading now = condition_reading(human, all, state);
+  const auto models = [&](std::uint64_t bit) {
+    return (human.condition->settings.effects & bit) != 0;
+  };
+  if (models(diver::kHypoxia)) out.saturation = now.saturation;
+  if (models(diver::kCarbonDioxide)) out.co2_mmhg = now.co2_mmhg;
+  if (models(diver::kNarcosis)) out.narcotic_depth_m = now.narcotic_depth_m;
+  if (models(diver::kOxygenToxicity)) out.oxygen_dose = now.oxygen;
+  if (models(diver::kCold)) out.core_c = now.core_c;
+  out.slowing = now.slowing;
+  out.strength = now.strength;
+  out.unconscious = now.lost != 0;
+}
+
 hud::Health health_of(GroupPhase phase) {
   switch (phase) {
     case GroupPhase::kWaiting:
@@ -94,6 +111,7 @@ hud::DiveData instrument_data(const PhysicsWorld& world, std::size_t diver,
   read_computer(human, state, out);
   read_gas(human, state, out);
   read_body(human, state, out);
+  if (human.condition) read_condition(human, state, snapshot.state, out);
   return out;
 }
 

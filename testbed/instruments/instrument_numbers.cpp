@@ -52,6 +52,14 @@ void for_each_number(Data& d, Visit&& visit) {
   visit("heart_bpm", d.heart_bpm);
   visit("breath_bpm", d.breath_bpm);
   visit("lungs_m3", d.lungs_m3);
+  visit("saturation", d.saturation);
+  visit("co2_mmhg", d.co2_mmhg);
+  visit("narcotic_depth_m", d.narcotic_depth_m);
+  visit("oxygen_dose", d.oxygen_dose);
+  visit("core_c", d.core_c);
+  visit("slowing", d.slowing);
+  visit("strength", d.strength);
+  visit("unconscious", d.unconscious);
   static constexpr std::array<const char*, diver::kCompartments> kTissues{
       "tissue_0",  "tissue_1",  "tissue_2",  "tissue_3", "tissue_4",  "tissue_5",
       "tissue_6",  "tissue_7",  "tissue_8",  "tissue_9", "tissue_10", "tissue_11",

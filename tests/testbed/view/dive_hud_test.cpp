@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::uint32_t kWidth = 640, kHeight = 480;
 
-std::unique_ptr<LivePhysics> diver_physics() {
+std::unique_ptr<LivePhysics> diver_physics(const std::string& keys = "") {
   const scene::Scene scene =
-      load_text(kStillWater + diver_text("position_m = [0, -12, 0]\n" + std::string(kProne)))
+      load_text(kStillWater + diver_text("position_m = [0, -12, 0]\n" + std::string(kProne) + keys))
           .value();
   auto physics = LivePhysics::create(scene, LivePhysics::Pace::kPicture).value();
   physics->start();
@@ -46,6 +46,22 @@ TEST(InstrumentData, IsWhatTheStateSays) {
   EXPECT_TRUE(data.gas_known);
   // Air at saturation of the surface: n2 of 0.75 bar in 2.2 bar, and little more.
   for (const double tissue : data.tissues) EXPECT_NEAR(tissue, 0.5 * 0.75 / 2.2, 0.05);
+}
+
+TEST(InstrumentData, TheConditionIsThatOfEffectsThatTheSceneNames) {
+  const auto plain = diver_physics();
+  const hud::DiveData without = instrument_data(plain->world(), 0, plain->shown_snapshot());
+  EXPECT_TRUE(std::isnan(without.slowing) && std::isnan(without.saturation));
+  const auto physics = diver_physics("condition = { effects = [\"narcosis\", \"cold\"] }\n");
+  const hud::DiveData data = instrument_data(physics->world(), 0, physics->shown_snapshot());
+  const diver::ConditionState& state = physics->shown().conditions()[0];
+  EXPECT_EQ(data.core_c, state.cold.core_c);
+  EXPECT_EQ(data.slowing, state.slowing);
+  EXPECT_EQ(data.strength, state.strength);
+  EXPECT_NEAR(data.narcotic_depth_m, 12.0, 1.5);  // of air
+  EXPECT_TRUE(std::isnan(data.saturation) && std::isnan(data.co2_mmhg));
+  EXPECT_TRUE(std::isnan(data.oxygen_dose));
+  EXPECT_FALSE(data.unconscious);
 }
 
 // From the axes: the head's way while the diver lies, the belly's while the diver stands.
