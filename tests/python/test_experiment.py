@@ -1,7 +1,9 @@
 """The parts of tools/experiment that need no program: boxes of detectors, orders, scores, studies, intervals, power. Exit 77: skipped."""
+import json
 import math
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -390,6 +392,32 @@ class Looking(unittest.TestCase):
                     file.write(text)
                 with self.assertRaisesRegex(Refused, words):
                     looking.Detector(path)
+
+    @unittest.skipUnless(os.path.exists(detector.model_of("shipped")), "no shipped detector")
+    def test_several_look_with_their_mean_and_both_ways_round(self):
+        picture = np.random.Generator(np.random.Philox(key=2)).integers(0, 255, (64, 64, 3), dtype=np.uint8)
+        shipped = looking.Detector(detector.model_of("shipped"))
+        self.assertEqual(len(shipped.others), 1)
+        views = []
+        for one in (shipped, *shipped.others):
+            for side in (picture, np.ascontiguousarray(picture[:, ::-1])):
+                one._net.setInput(np.ascontiguousarray(looking.normalised(side).transpose(2, 0, 1)[None]))
+                views.append(one._net.forward().ravel().astype(float))
+        mean = np.mean(views, axis=0) ** shipped.power
+        np.testing.assert_allclose(shipped.shares(picture), mean / mean.sum(), atol=1e-6)
+        self.assertEqual(len(looking.files_of(detector.model_of("shipped"))), 4)
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("a.onnx", "b.onnx"):
+                shutil.copy(detector.model_of("small"), os.path.join(folder, name))
+            about = {"kind": "classifier", "classes": crops.CLASSES, "side": 64}
+            for a, b, words in (({"with": ["b.onnx"]}, {"with": ["a.onnx"]}, "looks with another"), ({"with": ["a.onnx"]}, {}, "found with"),
+                                ({"with": ["../b.onnx"]}, {}, "beside it"), ({"with": ["b.onnx"]}, {"classes": ["a"]}, "of the same classes"),
+                                ({"power": True}, {}, "found power True"), ({"mirror": 1}, {}, "mirror 1")):
+                for name, more in (("a", a), ("b", b)):
+                    with open(os.path.join(folder, name + ".json"), "w") as file:
+                        json.dump({**about, **more}, file)
+                with self.assertRaisesRegex(Refused, words):
+                    looking.Detector(os.path.join(folder, "a.onnx"))
 
     @unittest.skipUnless(os.path.exists(detector.model_of("shipped")), "no shipped detector")
     def test_a_thread_answers_and_drops_what_is_old(self):

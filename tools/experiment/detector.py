@@ -15,7 +15,7 @@ from scenario import SHIPPED, Failed, Setting
 MAKERS = {"camera": crops, "sonar": sonar_crops}
 SETTINGS = {
     "eye": Setting("camera", "pictures of a camera or of an imaging sonar", words=list(MAKERS)),
-    "model": Setting("shipped", "shipped (of a camera alone), or an .onnx file with its .json beside it"),
+    "model": Setting("shipped", "shipped, small (one network of it; both of a camera alone), or an .onnx file with its .json beside it"),
     "crops": Setting(12, "of each class and scene", 1, 1000, whole=True),
 }
 MEASURES = {
@@ -28,8 +28,9 @@ DETECTORS = os.path.join(SHIPPED, "..", "detectors")
 
 
 def model_of(name, eye="camera"):
-    """The file of "shipped", or the user's own."""
-    return os.path.join(DETECTORS, eye + ".onnx") if name == "shipped" else name
+    """The file of "shipped", of "small" (one network of it alone), or the user's own."""
+    shipped = {"shipped": eye + ".onnx", "small": eye + "_2.onnx"}
+    return os.path.join(DETECTORS, shipped[name]) if name in shipped else name
 
 
 def files(settings):

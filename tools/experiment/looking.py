@@ -1,7 +1,9 @@
 """A detector read from an ONNX file by OpenCV, and a thread of its own that looks at pictures with it.
 
 Beside NAME.onnx lies NAME.json: {"kind": "classifier", "yolo5", "yolo8" or "ssd", "classes": [...], "side": 64,
-"normalise": "crop" (the default) or "none"}. A classifier gives a share to each class of a whole crop. YOLO's raw output and
+"normalise": "crop" (the default) or "none", "mirror": false}. With "mirror" a classifier also looks at the crop with left
+and right exchanged and answers the mean, for twice the time. With "with": ["OTHER.onnx"] the classifiers of those files, beside it,
+look too: the mean of all counts, to the power "power", which makes it as sure as it is right. A classifier gives a share to each class of a whole crop. YOLO's raw output and
 SSD's rows (image, class, confidence, box) give boxes; overlapping ones are thinned. Pictures are [row, column(, channel)]
 as the cameras and sonars give them, RGB.
 """
@@ -26,35 +28,66 @@ def normalised(pixels):
     return (x - mean) / np.maximum(spread, 2.0)
 
 
-def files_of(path):
-    """(path, its description); refused where one is not there."""
+def files_of(path, alone=True):
+    """(path, its description, and those of others that look with it); refused where one is not there."""
     files = (path, os.path.splitext(path)[0] + ".json")
     for file in files:
         if not os.path.isfile(file):
             raise Refused(f"{file}: found no such file; accepted: a detector's .onnx with its .json beside it")
+    for other in _others(path, _described(files[1])) if alone else ():
+        files += files_of(other, alone=False)
     return files
+
+
+def _described(about):
+    try:
+        with open(about, encoding="utf-8") as file:
+            told = json.load(file)
+        if not isinstance(told, dict):
+            raise TypeError("no object")
+        return told
+    except (ValueError, TypeError, OSError) as error:
+        raise Refused(f"{about}: found no description ({error!r}); accepted: kind, classes, side, normalise") from None
+
+
+def _others(path, about):
+    others = about.get("with", [])
+    if not isinstance(others, list) or not all(isinstance(o, str) and os.path.basename(o) == o and o.endswith(".onnx") for o in others) \
+            or os.path.basename(path) in others:
+        raise Refused(f"{path}: found with {others!r}; accepted: a list of other .onnx files beside it")
+    return [os.path.join(os.path.dirname(path), o) for o in others]
 
 
 class Detector:
     """One thread at a time uses it."""
 
-    def __init__(self, path):
+    def __init__(self, path, alone=True):
+        """alone: others may look with it."""
         try:
             import cv2
         except ModuleNotFoundError:
             raise Failed("detector: no OpenCV here; tools/setup detector installs python3-opencv") from None
         self._cv2, about = cv2, files_of(path)[1]
+        self.about = _described(about)
         try:
-            with open(about, encoding="utf-8") as file:
-                self.about = json.load(file)
             self.kind, self.classes, self.side = self.about["kind"], list(self.about["classes"]), int(self.about["side"])
-        except (ValueError, KeyError, TypeError, OSError) as error:
+        except (ValueError, KeyError, TypeError) as error:
             raise Refused(f"{about}: found no description ({error!r}); accepted: kind, classes, side, normalise") from None
         if self.kind not in KINDS or not 8 <= self.side <= 4096 or not self.classes:
             raise Refused(f"{about}: found kind {self.kind!r}, side {self.side}, {len(self.classes)} classes; accepted: "
                           f"{', '.join(KINDS)}; 8 to 4096; one or more")
-        if self.about.get("normalise", "crop") not in ("crop", "none"):
-            raise Refused(f"{about}: found normalise {self.about['normalise']!r}; accepted: crop, none")
+        self.normalise, self.mirror = self.about.get("normalise", "crop"), self.about.get("mirror", False)
+        if self.normalise not in ("crop", "none") or not isinstance(self.mirror, bool):
+            raise Refused(f"{about}: found normalise {self.normalise!r}, mirror {self.mirror!r}; accepted: crop, none; true, false")
+        self.power, others = self.about.get("power", 1.0), _others(path, self.about)
+        if isinstance(self.power, bool) or not isinstance(self.power, (int, float)) or not 0.1 <= self.power <= 10:
+            raise Refused(f"{about}: found power {self.power!r}; accepted: a number in [0.1, 10]")
+        if others and not alone:
+            raise Refused(f"{about}: found with in a detector that looks with another; accepted: none")
+        self.others = [Detector(o, alone=False) for o in others]
+        for other in self.others:
+            if {self.kind, other.kind} != {"classifier"} or other.classes != self.classes:
+                raise Refused(f"{about}: found with a {other.kind} of {', '.join(other.classes)}; accepted: classifiers of the same classes")
         try:
             self._net = cv2.dnn.readNetFromONNX(path)
             self._net.setPreferableBackend(cv2.dnn.DNN_BACKEND_OPENCV)
@@ -64,7 +97,7 @@ class Detector:
     def _blob(self, pixels):
         x = self._cv2.resize(pixels, (self.side, self.side), interpolation=self._cv2.INTER_AREA) \
             if pixels.shape[:2] != (self.side, self.side) else pixels
-        x = normalised(x) if self.about.get("normalise", "crop") == "crop" else np.atleast_3d(x).astype(np.float32) / 255.0
+        x = np.atleast_3d(x).astype(np.float32) / 255.0 if self.normalise == "none" else normalised(x)
         return np.ascontiguousarray(x.transpose(2, 0, 1)[None])
 
     def forward(self, pixels):
@@ -75,8 +108,14 @@ class Detector:
             raise Failed(f"detector: {_line(error)}") from None
 
     def shares(self, pixels):
-        """The answer of a classifier: the share of each class, their sum is 1."""
+        """The answer of a classifier, and of those that look with it: the share of each class, their sum is 1."""
+        out = sum((other._own_shares(pixels) for other in self.others), self._own_shares(pixels)) ** self.power
+        return out / out.sum()
+
+    def _own_shares(self, pixels):
         out = self.forward(pixels).ravel()
+        if self.mirror:
+            out = 0.5 * (out + self.forward(np.ascontiguousarray(pixels[:, ::-1])).ravel())
         if self.kind != "classifier" or out.size != len(self.classes):
             raise Failed(f"detector: found a {self.kind} of {out.size} numbers; accepted: a classifier of {len(self.classes)}")
         return out

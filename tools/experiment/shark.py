@@ -27,7 +27,7 @@ SETTINGS = {
     "shark_speed_m_s": Setting(0.3, "of its approach", 0.0, 5.0),
     "shark_circling_m_s": Setting(0.1, "across the line, to its left", -5.0, 5.0),
     "delay_s": Setting(0.0, "injected between the detector's word and the ROV", 0.0, 10.0),
-    "detector": Setting("assumed", "assumed: a share of misses; shipped: the diver's gaze crops go to it; or an .onnx file"),
+    "detector": Setting("assumed", "assumed: a share of misses; shipped, small: the diver's gaze crops go to it; or an .onnx file"),
     "detector_latency_s": Setting(0.0, "from the gaze to the detector's word, in simulated time", 0.0, 10.0),
     "detector_miss": Setting(0.0, "share of its looks, ten a second, in which an assumed one misses the shark", 0.0, 0.99),
     "detector_least": Setting(0.6, "how sure one that looks must be", 0.0, 1.0),
