@@ -142,8 +142,8 @@ class Training(unittest.TestCase):
         spec = importlib.util.spec_from_file_location("experiment_main", os.path.join(TOOLS, "__main__.py"))
         program = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(program)
-        before = training.LOOKS, training.EACH, training.EACH_CHOOSE
-        training.LOOKS, training.EACH, training.EACH_CHOOSE = 2, 8, 4
+        before = training.EACH, training.EACH_CHOOSE
+        training.EACH, training.EACH_CHOOSE = 8, 4
         with tempfile.TemporaryDirectory() as folder:
             with open(os.path.join(folder, "fake_crops.py"), "w") as file:
                 file.write(FAKE)
@@ -154,7 +154,7 @@ class Training(unittest.TestCase):
                 made = []
                 for workers in (1, 2):
                     out = os.path.join(folder, str(workers))
-                    asked = SimpleNamespace(name="train_fake", out=out, program="none", runs=10, seed=3, workers=workers, quiet=True)
+                    asked = SimpleNamespace(name="train_fake", out=out, program="none", runs=10, seed=3, workers=workers, quiet=True, set=[])
                     self.assertEqual(program.train(asked), 0)
                     with open(os.path.join(out, "fake.onnx"), "rb") as file:
                         made.append(file.read())
@@ -163,9 +163,37 @@ class Training(unittest.TestCase):
                 look = looking.Detector(os.path.join(out, "fake.onnx"))
                 bar = fake_crops.Maker(None, "test", 99)
                 self.assertGreater(look.shares(bar.one("bar")[0])[1], look.shares(bar.one("nothing")[0])[1] + 0.2)
+                self.goes_on_from(program, training, os.path.join(out, "fake.onnx"), look, bar.one("bar")[0], folder)
             finally:
                 sys.path.remove(folder)
-                training.LOOKS, training.EACH, training.EACH_CHOOSE = before
+                training.EACH, training.EACH_CHOOSE = before
+
+
+    def goes_on_from(self, program, training, path, look, picture, folder):
+        """The file read as a module answers as OpenCV does, and training goes on from it."""
+        import onnx_network
+        blob = torch.tensor(looking.normalised(picture).transpose(2, 0, 1)[None])
+        with torch.no_grad():
+            answer = onnx_network.module_of(torch, path).eval()(blob).softmax(1)[0].numpy()
+        np.testing.assert_allclose(answer, look.forward(picture).ravel(), atol=1e-5)
+        out = os.path.join(folder, "more")
+        asked = SimpleNamespace(name="train_fake", out=out, program="none", runs=10, seed=3, workers=1, quiet=True,
+                                set=[f"from={path}", "steps=2", "draw=5"])
+        self.assertEqual(program.train(asked), 0)
+        with open(os.path.join(out, "fake.json")) as file:
+            self.assertIn("--set steps=2 --set draw=5", json.load(file)["made_by"])
+        looking.Detector(os.path.join(out, "fake.onnx"))
+        for text in ("steps=0", "steps=-3", "draw=x", "form=a", "from="):
+            with self.assertRaisesRegex(Refused, "accepted: steps=N"):
+                training.settings_of([text], 3, 1)
+        bad = os.path.join(folder, "bad.onnx")
+        with open(path, "rb") as file:
+            data = file.read()
+        for broken in (b"", b"not a network", data[:len(data) // 2], data[:40]):
+            with open(bad, "wb") as file:
+                file.write(broken)
+            with self.assertRaisesRegex(Refused, "accepted: "):
+                onnx_network.module_of(torch, bad)
 
 
 class Outcomes(unittest.TestCase):

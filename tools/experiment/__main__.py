@@ -84,7 +84,7 @@ def train(asked):
     name, maker, channels = TRAINED[asked.name]
     folder(asked.out)
     share = training.train(name, maker, maker.CLASSES, channels, asked.program, asked.runs, 1 if asked.seed is None else asked.seed, asked.workers,
-                           asked.out, asked.quiet)
+                           asked.out, asked.quiet, asked.set)
     if not asked.quiet:
         print(f"{asked.out}/{name}.onnx: {100 * share:.1f} % of the crops kept aside")
     return 0

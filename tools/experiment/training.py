@@ -2,11 +2,15 @@
 processor; everything random follows from --seed, and the number of threads is fixed, so the same machine gives the same bits.
 
 Crops come from --runs scenes of the split "train" and are varied anew in each pass (variations.py). A tenth as many scenes of
-the split "choose", in places that training has not, choose the best pass and the temperature that makes the shares true
+the split "choose", in places that training has not, choose the temperature that makes the shares true
 (Guo et al. 2017). Scenes of the split "test" are never opened here. DIR gets NAME.onnx, NAME.json.
+
+--set steps=N, --set draw=N (the seed of weights and variations, where it is not --seed) and --set from=FILE.onnx, weights of
+such a file to go on from, more slowly.
 """
 import concurrent.futures
 import concurrent.futures.process
+import copy
 import importlib
 import json
 import os
@@ -16,13 +20,16 @@ import tempfile
 import numpy as np
 
 import looking
+import onnx_network
 import variations
 from crops import some_of
 from runner import Tools
 from scenario import Failed, Refused
 
 EACH, EACH_CHOOSE = 12, 10  # crops of a class and a scene
-BATCH, THREADS, LOOKS = 64, 1, 8
+BATCH, THREADS = 40, 1
+MOST_RATE, MORE_RATE, COOL = 3e-3, 1e-3, 300  # from the beginning, and from weights of a file; steps in which it ends
+KEPT = 0.99  # of the averaged weights at each step
 LEAST_SCENES = 10
 
 
@@ -92,7 +99,30 @@ def _blobs(pictures):
     return np.stack([looking.normalised(p).transpose(2, 0, 1) for p in pictures])
 
 
-def train(name, maker, classes, channels, program, scenes, seed, workers, out, quiet):
+def settings_of(sets, steps, seed):
+    """(steps, draw, from or None) of --set."""
+    numbers, start = {"steps": steps, "draw": seed}, None
+    for text in sets:
+        key, _, value = text.partition("=")
+        if key == "from" and value:
+            start = value
+        elif key in numbers and value.isascii() and value.isdigit() and (key == "draw" or 1 <= int(value)) and int(value) <= 10 ** 7:
+            numbers[key] = int(value)
+        else:
+            raise Refused(f"--set: found \"{text}\"; accepted: steps=N, draw=N (whole numbers to 10000000), from=FILE.onnx")
+    return numbers["steps"], numbers["draw"], start
+
+
+def _going_on(torch, path, classes):
+    about = looking.files_of(path)[1]
+    with open(about, encoding="utf-8") as file:
+        told = json.load(file)
+    if told.get("classes") != classes or told.get("normalise", "crop") != "crop":
+        raise Refused(f"{about}: found classes {told.get('classes')}, normalise {told.get('normalise')}; accepted: {', '.join(classes)}; crop")
+    return onnx_network.module_of(torch, path)
+
+
+def train(name, maker, classes, channels, program, scenes, seed, workers, out, quiet, sets=()):
     try:
         import torch
     except ModuleNotFoundError:
@@ -100,69 +130,95 @@ def train(name, maker, classes, channels, program, scenes, seed, workers, out, q
     scenes = maker.SCENES if scenes is None else scenes
     if scenes < LEAST_SCENES:
         raise Refused(f"--runs: found {scenes}; accepted: {LEAST_SCENES} scenes or more, to learn from")
+    steps, draw, start = settings_of(sets, maker.STEPS, seed)
+    begun = _going_on(torch, start, classes) if start else None
     x, y = gather(maker, program, "train", scenes, 1000 * seed, EACH, workers, not quiet)
     xv, yv = gather(maker, program, "choose", max(3, scenes // 10), 1000 * seed, EACH_CHOOSE, workers, not quiet)
     if not quiet:
         print(f"{len(y)} crops to learn from, {len(yv)} to choose by: {np.bincount(y, minlength=len(classes)).tolist()}", flush=True)
-    net, best = fit(torch, (x, y), (xv, yv), channels, classes, maker.STEPS, seed, quiet)
-    about = {"kind": "classifier", "classes": classes, "side": 64, "channels": channels, "normalise": "crop",
-             "made_by": f"neritic experiment train_{name} --runs {scenes} --seed {seed}",
+    net, best = fit(torch, (x, y), (xv, yv), channels, classes, steps, draw, quiet, begun)
+    about = {"kind": "classifier", "classes": classes, "side": 64, "channels": channels, "normalise": "crop", "mirror": True,
+             "made_by": " ".join([f"neritic experiment train_{name} --runs {scenes} --seed {seed}", *(f"--set {s}" for s in sets)]),
              "share_of_crops_to_choose_by": round(best, 4)}
     _export(torch, torch.nn.Sequential(net, torch.nn.Softmax(1)).eval(), name, about, out)
     return best
 
 
-def fit(torch, lessons, chosen_by, channels, classes, steps, seed, quiet):
-    """(network of calibrated logits, share of the crops to choose by that it names rightly)."""
+def fit(torch, lessons, chosen_by, channels, classes, steps, seed, quiet, start=None):
+    """start: a network to go on from. Returns (network of calibrated logits, share of the crops to
+    choose by that it names rightly)."""
     torch.manual_seed(seed)
     torch.set_num_threads(THREADS)
     torch.use_deterministic_algorithms(True)
-    net = network(torch, channels, len(classes)).to(memory_format=torch.channels_last)
+    most = MORE_RATE if start else MOST_RATE
+    net = (start or network(torch, channels, len(classes))).to(memory_format=torch.channels_last)
     seen = torch.tensor(_blobs(chosen_by[0])).to(memory_format=torch.channels_last), torch.tensor(chosen_by[1])
-    best = _learn(torch, net, variations.of(torch, *lessons, seed), seen, steps, quiet)
-    temperature = _temperature(torch, _logits(torch, net, seen[0]), seen[1])
+    _learn(torch, net, variations.of(torch, *lessons, seed), seen, steps, most, quiet)
+    logits = _logits(torch, net, seen[0])
+    temperature = _temperature(torch, logits, seen[1])
     with torch.no_grad():  # into the last layer, so that the file's shares are calibrated
         net.last.weight /= temperature
         net.last.bias /= temperature
-    return net, best
+    return net, float((_shares(logits / temperature).argmax(1) == seen[1]).float().mean())
 
 
-def _learn(torch, net, batches, seen, steps, quiet):
-    """Leaves the best of LOOKS passes in net; returns the share of the crops to choose by that it names rightly."""
+def rate(step, steps, most):
+    """How fast it learns: evenly, after a slow start, and slower and slower over the last COOL steps."""
+    return most * min(1.0, (step + 1) / 100, (steps - step) / min(COOL, steps))
+
+
+def _learn(torch, net, batches, seen, steps, most, quiet):
+    """Leaves the average of the last weights in net."""
     optimiser = torch.optim.AdamW(net.parameters(), lr=1e-3, weight_decay=2e-2)
-    rate = torch.optim.lr_scheduler.OneCycleLR(optimiser, max_lr=5e-3, total_steps=steps)
+    mean = copy.deepcopy(net)
     loss_of = torch.nn.CrossEntropyLoss(label_smoothing=0.05)
-    best, best_state = -1.0, None
     with concurrent.futures.ThreadPoolExecutor(1) as ahead:  # the next batch while the network learns
         waiting = ahead.submit(batches, BATCH)
         for step in range(steps):
             net.train()
             x, y = waiting.result()
             waiting = ahead.submit(batches, BATCH)
+            for group in optimiser.param_groups:
+                group["lr"] = rate(step, steps, most)
             optimiser.zero_grad()
             loss_of(net(x), y).backward()
             optimiser.step()
-            rate.step()
-            if (step + 1) % (steps // LOOKS) == 0:
-                share = float((_logits(torch, net, seen[0]).argmax(1) == seen[1]).float().mean())
-                if share >= best:
-                    best, best_state = share, {k: v.clone() for k, v in net.state_dict().items()}
-                if not quiet:
-                    print(f"step {step + 1} of {steps}: {100 * share:.1f} % of the crops to choose by", flush=True)
-    net.load_state_dict(best_state)
-    return best
+            _average(torch, mean, net, min(KEPT, (step + 1) / (step + 10)))
+            if not quiet and (step + 1) % 200 == 0:
+                share = _right(torch, mean, seen)
+                print(f"step {step + 1} of {steps}: {100 * share:.1f} % of the crops to choose by", flush=True)
+    net.load_state_dict(mean.state_dict())
+
+
+def _right(torch, net, seen):
+    return float((_shares(_logits(torch, net, seen[0])).argmax(1) == seen[1]).float().mean())
+
+
+def _average(torch, mean, net, kept):
+    with torch.no_grad():
+        for of, now in zip(mean.state_dict().values(), net.state_dict().values()):
+            if of.is_floating_point():
+                of.mul_(kept).add_(now, alpha=1 - kept)
+            else:
+                of.copy_(now)
 
 
 def _logits(torch, net, x):
+    """[2, crops, classes]: of each crop and of its mirror image."""
     net.eval()
     with torch.no_grad():
-        return torch.cat([net(part) for part in x.split(256)])
+        return torch.stack([torch.cat([net(part.flip(3) if flips else part) for part in x.split(256)]) for flips in (False, True)])
+
+
+def _shares(logits):
+    """As looking.py answers: the mean over a crop and its mirror image."""
+    return logits.softmax(2).mean(0)
 
 
 def _temperature(torch, logits, y):
     """By which the logits are divided for the least cross entropy: a search over 0.3 to 3."""
     tried = np.exp(np.linspace(np.log(0.3), np.log(3.0), 60))
-    return float(min(tried, key=lambda t: float(torch.nn.functional.cross_entropy(logits / t, y))))
+    return float(min(tried, key=lambda t: float(torch.nn.functional.nll_loss(_shares(logits / t).log(), y))))
 
 
 def _export(torch, model, name, about, out):
