@@ -28,6 +28,7 @@ import places
 import questionnaires
 import report
 import rotations
+import sonar_crops
 from human_state import HumanState
 from scenario import Failed, Refused
 
@@ -102,6 +103,23 @@ class Crops(unittest.TestCase):
         small = np.zeros((64, 64), bool)
         small[30:40, 30:40] = True  # 100 pixels
         self.assertFalse(crops.visible(light + 50 * small[..., None], small))
+
+    def test_sonar_pictures_are_64_by_64_whatever_the_bins_and_things_in_noise_are_no_crops(self):
+        rng = np.random.Generator(np.random.Philox(key=3))
+        for finer in (1, 2, 5):
+            echoes = rng.gamma(1.0, 1.0, (64 * finer, 64))
+            echoes[20 * finer:26 * finer, 30:36] *= 300
+            pixels = sonar_crops.picture(echoes)
+            self.assertEqual((pixels.shape, pixels.dtype), ((64, 64), np.uint8))
+            its = np.zeros((64, 64), bool)
+            its[20:26, 30:36] = True
+            self.assertGreater(pixels[its].mean(), pixels[~its].mean() + 80)
+            self.assertTrue(sonar_crops.heard(pixels, its))
+            few = np.zeros((64, 64), bool)
+            few[20:22, 30:36] = True
+            faint = np.zeros((64, 64), bool)
+            faint[40:46, 30:36] = True
+            self.assertFalse(sonar_crops.heard(pixels, few) or sonar_crops.heard(pixels, faint))
 
     @unittest.skipIf(torch is None, "no PyTorch here")
     def test_lessons_vary_by_the_seed_and_keep_their_thing(self):

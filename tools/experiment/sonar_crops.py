@@ -2,7 +2,8 @@
 
 A scene is a bottom, a device (frequency, beam, pulse, noise, speckle) and a range; the diver, the ROV, a moored mine, a
 tyre or nothing but stones are in it in random poses. Devices and bottoms of the split "test" never occur in "train". A crop
-whose thing is the loudest in fewer than LEAST_BINS bins is not made.
+whose thing is the loudest in fewer than LEAST_BINS of the 64 x 64 bins, or there not LEAST_LOUDER levels of 255 (3.5 dB) over the
+rest, is not made: nobody could name it.
 """
 import math
 import os
@@ -14,7 +15,7 @@ from rotations import quaternion
 
 CLASSES = ["nothing", "diver", "rov", "mine", "tyre"]
 LABELS = {"diver": 4, "rov": 5, "mine": 12, "tyre": 11}
-SIDE, LEAST_BINS, WINDOW_M = 64, 24, 4.0
+SIDE, LEAST_BINS, LEAST_LOUDER, WINDOW_M = 64, 16, 20.0, 4.0
 SCENES, STEPS = 40, 1600  # to learn from; of the training
 SPLITS = {"train": {"bottoms": ["sand", "gravel", "mud"], "khz": [550, 750, 1200], "beam": [0.8, 1.0, 1.4]},
           "choose": {"bottoms": ["sand", "mud"], "khz": [650], "beam": [0.9, 1.3]},
@@ -62,9 +63,23 @@ scatter = {{ count = 30, area_m = [-14, -14, 14, 14], on = "floor", scale = [0.1
 
 
 def picture(echoes, span_db=45.0):
-    """Levels 0 to 255 of a sonar's intensities: the loudest bin is white, span_db below it is black."""
+    """Levels 0 to 255 of a sonar's intensities, [64, 64]: the loudest bin is white, span_db below it is black. Where the sonar's
+    quality divides range bins that are too coarse for it, the mean of their levels counts."""
     db = 10 * np.log10(np.maximum(echoes, 1e-30) / max(float(echoes.max()), 1e-30))
-    return np.rint(255 * np.clip(1 + db / span_db, 0, 1)).astype(np.uint8)
+    return pooled(np.rint(255 * np.clip(1 + db / span_db, 0, 1)))
+
+
+def pooled(levels):
+    return np.rint(_mean_of_bins(levels)).astype(np.uint8)
+
+
+def _mean_of_bins(values):
+    return values.reshape(SIDE, -1, values.shape[1]).mean(axis=1)
+
+
+def heard(pixels, its):
+    """Whether anybody could name the thing of these bins."""
+    return its.sum() >= LEAST_BINS and pixels[its].mean() - pixels[~its].mean() >= LEAST_LOUDER
 
 
 class Maker:
@@ -136,9 +151,10 @@ class Maker:
             world[thing].pose(at, q, velocity=[0, 0, 0])
         seen = world.tick(1)
         echoes, labels = np.array(seen["eye_crop/echoes"].pixels), np.array(seen["eye_crop/echo_labels"].pixels)
-        if name != "nothing" and np.count_nonzero(labels == LABELS[name]) < LEAST_BINS:
+        pixels = picture(echoes)
+        if name != "nothing" and not heard(pixels, _mean_of_bins(labels == LABELS[name]) >= 0.5):
             return None
-        return picture(echoes), far
+        return pixels, far
 
     def some(self, each):
         return some_of(self.one, CLASSES, each)
