@@ -47,6 +47,15 @@ scene::Scene wall_at(double distance_m, scene::Sonar sonar) {
   return scene;
 }
 
+// For an aperture of a degree: patterns as wide as those of every_term() would reach far beyond it,
+// with thousands of rows.
+scene::SonarTerms every_term_of_a_degree() {
+  scene::SonarTerms terms = every_term();
+  terms.beam.azimuth->half_power_rad = radians(0.5);
+  terms.beam.elevation->half_power_rad = radians(2.0);
+  return terms;
+}
+
 TEST_F(SonarExtremes, EveryKindWithEveryTermIsFinite) {
   for (const SonarKind kind : kSonarKinds) {
     scene::Sonar sonar = small_sonar(kind);
@@ -59,6 +68,7 @@ TEST_F(SonarExtremes, TheLoudestThatIsAcceptedIsAFiniteFloat) {
   for (const SonarKind kind : kSonarKinds)
     for (const bool speckle : {false, true})
       for (const double absorption : {0.0, 1000.0}) {
+        if (speckle != (absorption > 0.0) && !test::is_thorough()) continue;
         scene::Sonar sonar = small_sonar(kind);
         sonar.range_min_m = 0.0;
         sonar.terms = every_term();
@@ -95,7 +105,7 @@ TEST_F(SonarExtremes, FromFiveCentimetresToTenKilometres) {
     const double db = 10.0 * std::log10(solid_angle) - 27.0 - 20.0 * std::log10(distance_m) -
                       2e-3 * distance_m + 200.0;
     EXPECT_NEAR(10.0 * std::log10(total(level.at(0))), db, 0.1) << distance_m;
-    scene.sonars[0].terms = every_term();
+    scene.sonars[0].terms = every_term_of_a_degree();
     expect_sane(pings(device(), scene), fmt::format("{} m, every term", distance_m));
   }
 }
@@ -110,7 +120,10 @@ TEST_F(SonarExtremes, AperturesOfATenthDegreeAndAFullTurn) {
         sonar.semi_angle_rad = radians(0.05);
       }
       sonar.terms = every_term();
-      if (aperture_deg < 1.0) sonar.terms.beam.azimuth->half_power_rad = radians(0.1);
+      if (aperture_deg < 1.0) {
+        sonar.terms.beam.azimuth->half_power_rad = radians(0.1);
+        sonar.terms.beam.elevation->half_power_rad = radians(0.3);
+      }
       expect_sane(pings(device(), some_sea(sonar)),
                   fmt::format("{} {} degrees", scene::name_of(kind), aperture_deg));
     }
@@ -192,7 +205,7 @@ TEST_F(SonarExtremes, AbsorptionFromOneHertzToTenMegahertz) {
     EXPECT_DOUBLE_EQ(frames.at(0).absorption_db_per_m, wanted);
     EXPECT_GE(wanted, 0.0);
     scene::Scene every = scene;
-    every.sonars[0].terms = every_term();
+    every.sonars[0].terms = every_term_of_a_degree();
     every.sonars[0].terms.frequency_hz = frequency_hz;
     expect_sane(pings(device(), every), fmt::format("{} Hz, every term", frequency_hz));
     if (i == 2) {
@@ -271,7 +284,6 @@ TEST_F(SonarExtremes, AHundredKilometresFromTheOriginItSoundsTheSame) {
   for (const SonarKind kind : kSonarKinds) {
     scene::Sonar sonar = small_sonar(kind);
     sonar.terms = every_term();
-    expect_sane(pings(device(), some_sea(sonar)), scene::name_of(kind));
     // Scatterers belong to their place in the world; all else goes with the sonar.
     sonar.terms.speckle.reset();
     sonar.terms.noise.reset();

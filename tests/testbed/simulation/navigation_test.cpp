@@ -64,7 +64,7 @@ Square fly_square(const std::string& text) {
 }
 
 TEST(Navigation, AMissionSucceedsByWhatIsMeasuredAlone) {
-  for (int seed = 1; seed <= 5; ++seed) {
+  for (int seed = 1; seed <= (test::is_thorough() ? 8 : 3); ++seed) {
     const Square square = fly_square(square_text(seed));
     EXPECT_EQ(square.arrived, 4u) << seed;
     EXPECT_LT(square.largest_error_m, 0.6) << seed;
