@@ -2,6 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_multiview : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#extension GL_KHR_shader_subgroup_vote : require
 
 // Geometry G-buffer of alpha-masked materials: what the mask cuts away returns no echo.
 #include "shared/octahedral.h"
@@ -18,6 +21,7 @@ layout(location = 0) out vec2 out_normal;
 layout(location = 1) out uvec2 out_label;
 
 void main() {
+  take_material();
   if (material_base_color(uv, color).a < material.alpha_cutoff) discard;
   vec3 n = dot(normal, normal) > 0.0 ? normal : vec3(0.0, 1.0, 0.0);
   out_normal = octahedral_encode(gl_FrontFacing ? n : -n);

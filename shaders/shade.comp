@@ -3,6 +3,9 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#extension GL_KHR_shader_subgroup_vote : require
 
 // Shading in compute on the G-buffer: surface light, then the water between it and the eye.
 #include "shared/octahedral.h"
@@ -13,7 +16,7 @@ layout(local_size_x = kShadeGroup, local_size_y = kShadeGroup) in;
 
 layout(push_constant, scalar) uniform Push { ShadePush push; };
 layout(set = 0, binding = kShadeViews, scalar) uniform Views { View views[kMaxViews]; };
-layout(set = 0, binding = kShadeLighting, scalar) uniform Light { Lighting light; };
+layout(set = 0, binding = kShadeLighting, scalar) uniform Light { Lighting light_data; };
 layout(set = 0, binding = kShadeDepth) uniform texture2DArray depth_image;
 layout(set = 0, binding = kShadeNormal) uniform texture2DArray normal_image;
 layout(set = 0, binding = kShadeAlbedo) uniform texture2DArray albedo_image;
@@ -21,14 +24,14 @@ layout(set = 0, binding = kShadeMaterial) uniform texture2DArray material_image;
 layout(set = 0, binding = kShadeEmissive) uniform texture2DArray emissive_image;
 layout(set = 0, binding = kShadeHdr, rgba16f) writeonly uniform image2DArray hdr_image;
 layout(set = 0, binding = kShadeScattered, rgba16f) writeonly uniform image2DArray scattered_image;
-layout(set = 0, binding = kShadeWaves, scalar) uniform Sea { Waves sea; };
+layout(set = 0, binding = kShadeWaves, scalar) uniform Sea { Waves sea_data; };
 layout(set = 0, binding = kShadeTiles, scalar) readonly buffer Tiles { uint tiles[]; };
 
 layout(set = 0, binding = kShadeSeen) uniform texture2DArray seen_image;
 layout(set = 0, binding = kShadeCaustics) uniform sampler2DArray caustics_image;
 layout(set = 0, binding = kShadeShafts) uniform texture2DArray shafts_image;
 layout(set = 0, binding = kShadeLampMaps) uniform texture2DArray lamp_maps;
-layout(set = 0, binding = kShadeLampShadows, scalar) uniform Shadows { LampShadows lamp_shadows; };
+layout(set = 0, binding = kShadeLampShadows, scalar) uniform Shadows { LampShadows lamp_shadow_data; };
 
 layout(constant_id = kSpecTerms) const uint kTerms = ~0u;
 layout(constant_id = kSpecLamps) const uint kLamps = kMaxLamps;
@@ -41,30 +44,43 @@ bool light_has(uint term) { return (kTerms & term) != 0u; }
 uint lamp_count() { return kLamps; }
 uint glow_samples() { return kGlowSamples; }
 
+#include "shared/even.glsl"
+#include "shared/even_light.glsl"
 #include "shared/caustic_light.glsl"
 #include "shared/shafts.h"
 #include "shared/surface.glsl"
 #include "shared/sea_surface.glsl"
 #include "shared/visibility.glsl"
 
+LampShadows lamp_shadows;
+void take_lamp_shadows() {
+  lamp_shadows.near_m = lamp_shadow_data.near_m;
+  NERITIC_OVER_LAMPS lamp_shadows.layer[i] = lamp_shadow_data.layer[i];
+  [[unroll]] for (uint i = 0u; i < min(lamp_count(), kMaxLampShadows); ++i)
+    lamp_shadows.clip_from_origin[i] = lamp_shadow_data.clip_from_origin[i];
+}
+
 // The lamp's map, between four texels.
 float lamp_seen(uint lamp, vec3 position, vec3 normal) {
-  uint layer = min(lamp_shadows.layer[lamp], kMaxLampShadows - 1u);
-  vec4 clip = lamp_shadows.clip_from_origin[layer] * vec4(position + normal * 0.01, 1.0);
+  uint own = lamp_shadows.layer[lamp], layer = min(own, kMaxLampShadows - 1u);
+  mat4 clip_from_origin = mat4(1.0);
+  [[unroll]] for (uint i = 0u; i < min(lamp_count(), kMaxLampShadows); ++i)
+    if (layer == i) clip_from_origin = lamp_shadows.clip_from_origin[i];
+  vec4 clip = clip_from_origin * vec4(position + normal * 0.01, 1.0);
   int size = textureSize(lamp_maps, 0).x;
   vec2 place = (clip.xy / max(clip.w, 1e-3) * 0.5 + 0.5) * float(size) - 0.5;
   vec2 corner = floor(place), part = place - corner;
   // A texel's slope at grazing sight, at that distance.
   float limit_m = clip.w * (1.0 - 3.0 / float(size)) - 0.01;
-  float seen = 0.0;
+  float seen = 0.0, near_m = lamp_shadows.near_m;
   [[unroll]] for (int i = 0; i < 4; ++i) {
     vec2 offset = vec2(i & 1, i >> 1);
     ivec2 at = clamp(ivec2(corner + offset), ivec2(0), ivec2(size - 1));
     float depth = texelFetch(lamp_maps, ivec3(at, layer), 0).r;
     vec2 w = mix(1.0 - part, part, offset);
-    if (depth * limit_m <= lamp_shadows.near_m) seen += w.x * w.y;
+    if (depth * limit_m <= near_m) seen += w.x * w.y;
   }
-  return lamp_shadows.layer[lamp] >= kMaxLampShadows || clip.w < lamp_shadows.near_m ? 1.0 : seen;
+  return own >= kMaxLampShadows || clip.w < near_m ? 1.0 : seen;
 }
 
 // The shafts image at a pixel: between its four nearest, the farther off in distance the less.
@@ -109,6 +125,14 @@ Seen seen_at(ivec3 at, float planar_m) {
 }
 
 void main() {
+  // The layer by workgroup: so drivers see that a whole group reads one view.
+  uint layer = kTiled ? 0u : gl_WorkGroupID.z;
+  vec3 eye = views[layer].eye, ray_dx = views[layer].ray_dx, ray_dy = views[layer].ray_dy;
+  vec3 ray_corner = views[layer].ray_corner;
+  float near_m = views[layer].near_m, pixel_rad = length(ray_dx);
+  take_light();
+  if (light_has(kLightWaves)) take_sea();
+  if (light_has(kLightLampShadows)) take_lamp_shadows();
   ivec3 at = ivec3(gl_GlobalInvocationID);
   at.y += int(push.first_group * kShadeGroup);
   if (kTiled) {  // of one layer
@@ -116,25 +140,22 @@ void main() {
     at = ivec3(uvec2(tile & 0xffffu, tile >> 16) * kShadeGroup + gl_LocalInvocationID.xy, 0);
   }
   ivec2 size = imageSize(hdr_image).xy;
-  if (at.x >= size.x || at.y >= size.y) return;
-  // The layer by workgroup: so drivers see that a whole group reads one view.
-  uint layer = kTiled ? 0u : gl_WorkGroupID.z;
-  vec3 ray = views[layer].ray_corner + (float(at.x) + 0.5) * views[layer].ray_dx + (float(at.y) + 0.5) * views[layer].ray_dy;
-  float eye_depth_m = light.origin_depth_m - views[layer].eye.y;
+  // Lanes beyond the picture go along, as loops over waves need all; what they store out there is dropped.
+  ivec3 to = at;
+  at.xy = min(at.xy, size - 1);
+  vec3 ray = ray_corner + (float(at.x) + 0.5) * ray_dx + (float(at.y) + 0.5) * ray_dy;
+  float eye_depth_m = light.origin_depth_m - eye.y;
   float stretch = length(ray);
   vec3 direction = ray / stretch;
   float depth = texelFetch(depth_image, at, 0).r;
-  if (depth >= 1.0) {  // hidden from the wearer (hidden.vert), or on the near plane itself
-    imageStore(hdr_image, at, vec4(0.0, 0.0, 0.0, 1.0));
-    if (light_has(kLightForwardScatter)) imageStore(scattered_image, at, vec4(0.0));
-    return;
-  }
+  bool hidden = depth >= 1.0;  // from the wearer (hidden.vert), or on the near plane itself
+  if (hidden) depth = 0.0;
   bool hit = kSurfaces && depth > 0.0;
-  float planar_m = hit ? views[layer].near_m / depth : kForever_m;
+  float planar_m = hit ? near_m / depth : kForever_m;
   vec4 material = texelFetch(material_image, at, 0);
   vec3 emitted = kSurfaces && light_has(kLightEmissive) ? texelFetch(emissive_image, at, 0).rgb * light.emissive_scale : vec3(0.0);
   Surface s;
-  s.position = views[layer].eye + ray * planar_m;
+  s.position = eye + ray * planar_m;
   s.normal = octahedral_decode(texelFetch(normal_image, at, 0).rg);
   vec3 root_albedo = texelFetch(albedo_image, at, 0).rgb;
   s.albedo = root_albedo * root_albedo;
@@ -145,7 +166,7 @@ void main() {
   vec3 radiance = emitted;
   if (kSurfaces && material.w < 0.9) {
     Seen seen = seen_at(at, planar_m);
-    seen.caustic = caustic_at(s.position, planar_m * length(views[layer].ray_dx));
+    seen.caustic = caustic_at(s.position, planar_m * pixel_rad);
     radiance += shade_surface(s, -direction, seen);
   }  // else unlit
   float sight_m = hit ? planar_m * stretch : kForever_m;
@@ -153,11 +174,11 @@ void main() {
   bool meets = false, from_above = false;
   if (light_has(kLightWaves)) {
     from_above = eye_depth_m + sea.eye_height_m < 0.0;
-    meets = kSeaSeen && sea_meets(views[layer].eye, direction, length(views[layer].ray_dx), surface);
+    meets = kSeaSeen && sea_meets(eye, direction, pixel_rad, sight_m, surface);
     meets = meets && surface.distance_m < sight_m;
     if (meets && !from_above) {
       // From below nothing above the water is seen but the sky.
-      radiance = sea_from_below(surface, views[layer].eye, direction);
+      radiance = sea_from_below(surface, eye, direction);
       hit = false;
       sight_m = surface.distance_m;
     } else if (!hit) {
@@ -174,11 +195,12 @@ void main() {
   if (light_has(kLightForwardScatter)) {
     // How much lighter than the water there, with what scatters forwards on the way, and the distance.
     vec3 kept = (radiance - sight.water) * kept_forwards(sight.length_m) * light.exposure;
-    imageStore(scattered_image, at, hit ? vec4(clamp(kept, vec3(-60000.0), vec3(60000.0)), sight.length_m) : vec4(0.0));
+    imageStore(scattered_image, to, hit && !hidden ? vec4(clamp(kept, vec3(-60000.0), vec3(60000.0)), sight.length_m) : vec4(0.0));
   }
   radiance = radiance * sight.transmittance + sight.added;
   if (light_has(kLightWaves) && meets && from_above)
-    radiance = sea_from_above(surface, views[layer].eye, direction, radiance);
-  radiance += lamp_glow(views[layer].eye, direction, sight_m);
-  imageStore(hdr_image, at, vec4(min(radiance * light.exposure, vec3(60000.0)), 1.0));
+    radiance = sea_from_above(surface, eye, direction, radiance);
+  radiance += lamp_glow(eye, direction, sight_m);
+  if (hidden) radiance = vec3(0.0);
+  imageStore(hdr_image, to, vec4(min(radiance * light.exposure, vec3(60000.0)), 1.0));
 }

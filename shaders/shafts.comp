@@ -14,8 +14,8 @@
 layout(local_size_x = kShadeGroup, local_size_y = kShadeGroup) in;
 
 layout(set = 0, binding = kShaftViews, scalar) uniform Views { View views[kMaxViews]; };
-layout(set = 0, binding = kShaftLighting, scalar) uniform Light { Lighting light; };
-layout(set = 0, binding = kShaftVisibility, scalar) uniform Sun { VisibilityParams sun; };
+layout(set = 0, binding = kShaftLighting, scalar) uniform Light { Lighting light_data; };
+layout(set = 0, binding = kShaftVisibility, scalar) uniform Sun { VisibilityParams sun_data; };
 layout(set = 0, binding = kShaftData, scalar) uniform Data { ShaftParams params; };
 layout(set = 0, binding = kShaftDepth) uniform texture2DArray depth_image;
 layout(set = 0, binding = kShaftCascades) uniform texture2DArray cascade_image;
@@ -28,14 +28,17 @@ bool light_has(uint term) { return (kTerms & term) != 0u; }
 uint lamp_count() { return 0u; }
 uint glow_samples() { return 1u; }
 
+#include "shared/even_light.glsl"
 #include "shared/caustic_light.glsl"
 #include "shared/water.glsl"
+
+VisibilityParams sun;  // its maps
 
 // Whether the sun's beam reaches a place: 1 or 0.
 float sun_reaches(vec3 position) {
   float seen = 1.0;
   bool found = false;
-  for (uint c = 0u; c < kCascades; ++c) {
+  [[unroll]] for (uint c = 0u; c < kCascades; ++c) {
     vec4 clip = sun.cascades[c].clip_from_origin * vec4(position, 1.0);
     vec2 at = clip.xy / clip.w;
     if (found || max(abs(at.x), abs(at.y)) >= 0.999) continue;
@@ -49,21 +52,28 @@ float sun_reaches(vec3 position) {
 }
 
 void main() {
+  uint layer = gl_WorkGroupID.z, samples = params.samples;
+  vec3 eye = views[layer].eye, ray_corner = views[layer].ray_corner, ray_dx = views[layer].ray_dx, ray_dy = views[layer].ray_dy;
+  float near_m = views[layer].near_m, farthest_m = params.reach_m;
+  take_light();
+  [[unroll]] for (uint c = 0u; c < kCascades; ++c) {
+    sun.cascades[c].clip_from_origin = sun_data.cascades[c].clip_from_origin;
+    sun.cascades[c].near_m = sun_data.cascades[c].near_m;
+  }
   ivec3 at = ivec3(gl_GlobalInvocationID);
   ivec2 out_size = imageSize(out_image).xy;
   if (at.x >= out_size.x || at.y >= out_size.y) return;
-  uint layer = gl_WorkGroupID.z;
   ivec2 size = textureSize(depth_image, 0).xy;
   ivec2 full = min(at.xy * int(kShaftStep) + int(kShaftStep / 2u), size - 1);
   float depth = texelFetch(depth_image, ivec3(full, layer), 0).r;
-  float planar_m = depth > 0.0 ? views[layer].near_m / depth : 600.0;
-  vec3 ray = views[layer].ray_corner + (float(full.x) + 0.5) * views[layer].ray_dx + (float(full.y) + 0.5) * views[layer].ray_dy;
+  float planar_m = depth > 0.0 ? near_m / depth : 600.0;
+  vec3 ray = ray_corner + (float(full.x) + 0.5) * ray_dx + (float(full.y) + 0.5) * ray_dy;
   float stretch = length(ray);
   vec3 direction = ray / stretch;
-  float eye_depth_m = light.origin_depth_m - views[layer].eye.y;
+  float eye_depth_m = light.origin_depth_m - eye.y;
   vec2 part_m = water_part(eye_depth_m, direction, depth > 0.0 ? planar_m * stretch : kForever_m);
   float whole_m = part_m.y - part_m.x;
-  float reach_m = min(whole_m, params.reach_m);
+  float reach_m = min(whole_m, farthest_m);
   float ratio = 1.0;
   if (reach_m > 0.0) {
     // Light that arrives from s metres on fades as exp(-rate s), in the green (look_through of shared/water.glsl).
@@ -79,18 +89,18 @@ void main() {
     uint order = ((x & 1u) << 3) | ((b.y & 1u) << 2) | (x & 2u) | (b.y >> 1);
     float turn = (float(order) + 0.5) / 16.0;
     float sum = 0.0;
-    for (uint i = 0u; i < params.samples; ++i) {
-      float share = (float(i) + turn) / float(params.samples);
+    for (uint i = 0u; i < samples; ++i) {
+      float share = (float(i) + turn) / float(samples);
       float way_m = -log(max(1.0 - share * reached, 1e-30)) / rate;
-      vec3 place = views[layer].eye + direction * (part_m.x + min(way_m, reach_m));
-      float lit = caustic_at(place, way_m * length(views[layer].ray_dx) * float(kShaftStep));
+      vec3 place = eye + direction * (part_m.x + min(way_m, reach_m));
+      float lit = caustic_at(place, way_m * length(ray_dx) * float(kShaftStep));
       // Light that is scattered round a solid fills its shadow, as on surfaces.
       if (kCascades > 0u) lit *= 1.0 - core_share(light.origin_depth_m - place.y) * (1.0 - sun_reaches(place));
       sum += lit;
     }
     // A sight of next to no water scatters nothing: 0 / 0 must not reach the blur.
     float part = all > 1e-6 ? clamp(reached / all, 0.0, 1.0) : 1.0;
-    ratio = 1.0 + (sum / float(params.samples) - 1.0) * part;
+    ratio = 1.0 + (sum / float(samples) - 1.0) * part;
   }
   imageStore(out_image, at, vec4(ratio, 0.0, 0.0, visibility_distance(planar_m)));
 }

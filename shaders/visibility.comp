@@ -13,7 +13,11 @@
 layout(local_size_x = kShadeGroup, local_size_y = kShadeGroup) in;
 
 layout(set = 0, binding = kVisibilityViews, scalar) uniform Views { View views[kMaxViews]; };
-layout(set = 0, binding = kVisibilityParams, scalar) uniform Params { VisibilityParams params; };
+layout(set = 0, binding = kVisibilityParams, scalar) uniform Params { VisibilityParams param_data; };
+
+// Copies, made before any branch: a processor's driver reads them faster there (shared/even.glsl).
+VisibilityParams params;
+View view;
 layout(set = 0, binding = kVisibilityDepth) uniform texture2DArray depth_image;
 layout(set = 0, binding = kVisibilityNormal) uniform texture2DArray normal_image;
 layout(set = 0, binding = kVisibilityCascades) uniform texture2DArray cascade_image;
@@ -37,23 +41,28 @@ vec2 sun_hidden(vec3 position, vec3 normal, float depth_m, float turn) {
   uint cascade = kCascades;
   vec2 where = vec2(0.0);
   float receiver_m = 0.0;
-  for (uint c = 0u; c < kCascades; ++c) {
+  float half_m = 1.0, near_m = 1.0;
+  vec3 across = vec3(0.0), along = vec3(0.0);
+  [[unroll]] for (uint c = 0u; c < kCascades; ++c) {
     vec4 clip = params.cascades[c].clip_from_origin * vec4(position, 1.0);
     vec2 at = clip.xy / clip.w;
-    float margin = 1.0 - 1.3 / params.cascades[c].half_m;
+    float own_half_m = params.cascades[c].half_m, margin = 1.0 - 1.3 / own_half_m;
     if (cascade == kCascades && max(abs(at.x), abs(at.y)) < margin) {
       cascade = c;
       where = at;
       receiver_m = clip.w;
+      half_m = own_half_m;
+      near_m = params.cascades[c].near_m;
+      across = params.cascades[c].across;
+      along = params.cascades[c].along;
     }
   }
   if (cascade == kCascades) return vec2(0.0);
   int size = textureSize(cascade_image, 0).x;
-  float half_m = params.cascades[cascade].half_m, near_m = params.cascades[cascade].near_m;
   float texel_m = 2.0 * half_m / float(size);
   float facing = max(dot(normal, params.to_sun), 0.03);
   // Metres towards the sun that the surface rises a metre across and along.
-  vec2 slope = -vec2(dot(normal, params.cascades[cascade].across), dot(normal, params.cascades[cascade].along)) / facing;
+  vec2 slope = -vec2(dot(normal, across), dot(normal, along)) / facing;
   float bias_m = 0.004 + texel_m * (0.5 + 0.7 * (abs(slope.x) + abs(slope.y)));
   float way_m = depth_m / params.sun_cosine;
   float core = sqrt(params.spread * params.spread + params.scattering_m * way_m * kCoreVariance);
@@ -88,7 +97,7 @@ vec2 sun_hidden(vec3 position, vec3 normal, float depth_m, float turn) {
 
 // Share of the surroundings that near surfaces hide: what rises over the surface's plane within reach.
 float occluded(uint layer, ivec2 full, ivec2 size, vec3 position, vec3 normal, float planar_m, float turn) {
-  float pixels = params.occlusion_m / (planar_m * length(views[layer].ray_dx));
+  float pixels = params.occlusion_m / (planar_m * length(view.ray_dx));
   pixels = min(pixels, 0.25 * float(size.y));
   if (pixels < 2.0) return 0.0;
   float sum = 0.0;
@@ -100,9 +109,9 @@ float occluded(uint layer, ivec2 full, ivec2 size, vec3 position, vec3 normal, f
     ivec2 at = full + ivec2(round(offset));
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) continue;
     float depth = texelFetch(depth_image, ivec3(at, layer), 0).r;
-    float z = views[layer].near_m / max(depth, 1e-9);
-    vec3 ray = views[layer].ray_corner + (float(at.x) + 0.5) * views[layer].ray_dx + (float(at.y) + 0.5) * views[layer].ray_dy;
-    vec3 v = views[layer].eye + ray * z - position;
+    float z = view.near_m / max(depth, 1e-9);
+    vec3 ray = view.ray_corner + (float(at.x) + 0.5) * view.ray_dx + (float(at.y) + 0.5) * view.ray_dy;
+    vec3 v = view.eye + ray * z - position;
     float d2 = dot(v, v);
     float rise = dot(normal, v) * inversesqrt(max(d2, 1e-12));
     sum += max(rise - 0.1, 0.0) * max(1.0 - d2 / (params.occlusion_m * params.occlusion_m), 0.0);
@@ -110,11 +119,27 @@ float occluded(uint layer, ivec2 full, ivec2 size, vec3 position, vec3 normal, f
   return clamp(2.2 * sum / float(kOcclusionTaps), 0.0, 1.0);
 }
 
+void take_params() {
+  params.to_sun = param_data.to_sun;
+  params.origin_depth_m = param_data.origin_depth_m;
+  params.spread = param_data.spread;
+  params.scattering_m = param_data.scattering_m;
+  params.sun_cosine = param_data.sun_cosine;
+  params.occlusion_m = param_data.occlusion_m;
+  [[unroll]] for (uint c = 0u; c < kCascades; ++c) params.cascades[c] = param_data.cascades[c];
+}
+
 void main() {
+  uint layer = gl_WorkGroupID.z;
+  view.eye = views[layer].eye;
+  view.near_m = views[layer].near_m;
+  view.ray_corner = views[layer].ray_corner;
+  view.ray_dx = views[layer].ray_dx;
+  view.ray_dy = views[layer].ray_dy;
+  take_params();
   ivec3 at = ivec3(gl_GlobalInvocationID);
   ivec2 out_size = imageSize(out_image).xy;
   if (at.x >= out_size.x || at.y >= out_size.y) return;
-  uint layer = gl_WorkGroupID.z;
   ivec2 size = textureSize(depth_image, 0).xy;
   ivec2 full = min(at.xy * int(kScale), size - 1);
   float depth = texelFetch(depth_image, ivec3(full, layer), 0).r;
@@ -122,9 +147,9 @@ void main() {
     imageStore(out_image, at, vec4(1.0));
     return;
   }
-  float planar_m = views[layer].near_m / depth;
-  vec3 ray = views[layer].ray_corner + (float(full.x) + 0.5) * views[layer].ray_dx + (float(full.y) + 0.5) * views[layer].ray_dy;
-  vec3 position = views[layer].eye + ray * planar_m;
+  float planar_m = view.near_m / depth;
+  vec3 ray = view.ray_corner + (float(full.x) + 0.5) * view.ray_dx + (float(full.y) + 0.5) * view.ray_dy;
+  vec3 position = view.eye + ray * planar_m;
   vec3 normal = octahedral_decode(texelFetch(normal_image, ivec3(full, layer), 0).rg);
   // Bayer's order of the 16 places of a block.
   uvec2 b = uvec2(at.xy) & 3u;

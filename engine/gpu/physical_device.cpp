@@ -69,6 +69,19 @@ void require(Struct& wanted, const std::array<FeatureRow<Struct>, N>& rows) {
   for (const auto& row : rows) wanted.*row.member = VK_TRUE;
 }
 
+// Shaders pass numbers from lane to lane (shaders/shared/even.glsl).
+bool has_subgroups(VkPhysicalDevice device) {
+  VkPhysicalDeviceVulkan11Properties have{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
+  VkPhysicalDeviceProperties2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &have};
+  vkGetPhysicalDeviceProperties2(device, &all);
+  constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+  constexpr VkSubgroupFeatureFlags kOperations =
+      VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_VOTE_BIT |
+      VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
+  return (have.subgroupSupportedStages & kStages) == kStages &&
+         (have.subgroupSupportedOperations & kOperations) == kOperations;
+}
+
 std::string missing_of(VkPhysicalDevice device, const VkPhysicalDeviceProperties& properties) {
   if (properties.apiVersion < VK_API_VERSION_1_3)
     return fmt::format("Vulkan 1.3 (it has {}.{})", VK_API_VERSION_MAJOR(properties.apiVersion),
@@ -83,6 +96,7 @@ std::string missing_of(VkPhysicalDevice device, const VkPhysicalDeviceProperties
   const auto add = [&missing](const std::string& what) {
     if (!what.empty()) missing += (missing.empty() ? "" : ", ") + what;
   };
+  if (!has_subgroups(device)) add("shuffles of subgroups in compute and fragment shaders");
   if (!choose_queue(device).found) add("a queue with graphics and compute");
   add(missing_limits(properties.limits));
   add(missing_formats([device](VkFormat format) {

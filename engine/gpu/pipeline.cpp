@@ -51,13 +51,14 @@ class ShaderModule {
   VkShaderModule handle_ = VK_NULL_HANDLE;
 };
 
+// Every stage that declares it learns whether the device is a processor (shaders/shared/even.glsl).
+constexpr std::uint32_t kOnProcessorConstant = 31;
+
 // Specialization constants in the form Vulkan reads; info points into the object.
 struct Specialization {
-  explicit Specialization(std::span<const SpecConstant> constants) {
-    for (const SpecConstant& constant : constants) {
-      entries.push_back({constant.id, static_cast<std::uint32_t>(values.size() * 4), 4});
-      values.push_back(constant.value);
-    }
+  Specialization(const Device& device, std::span<const SpecConstant> constants) {
+    for (const SpecConstant& constant : constants) add(constant);
+    add({kOnProcessorConstant, device.info().kind == "CPU" ? 1u : 0u});
     info.mapEntryCount = static_cast<std::uint32_t>(entries.size());
     info.pMapEntries = entries.data();
     info.dataSize = values.size() * 4;
@@ -65,6 +66,10 @@ struct Specialization {
   }
   Specialization(const Specialization&) = delete;
   Specialization& operator=(const Specialization&) = delete;
+  void add(const SpecConstant& constant) {
+    entries.push_back({constant.id, static_cast<std::uint32_t>(values.size() * 4), 4});
+    values.push_back(constant.value);
+  }
   std::vector<VkSpecializationMapEntry> entries;
   std::vector<std::uint32_t> values;
   VkSpecializationInfo info{};
@@ -161,7 +166,7 @@ Result<VkPipeline> make_graphics(const Device& device, const GraphicsPipelineDes
   NERITIC_TRY(const ShaderModule vertex,
               ShaderModule::create(device, desc.name + ".vert", desc.vertex_code));
   ShaderModule fragment;
-  const Specialization specialization(desc.constants);
+  const Specialization specialization(device, desc.constants);
   std::vector<VkPipelineShaderStageCreateInfo> stages{
       stage_info(VK_SHADER_STAGE_VERTEX_BIT, vertex, specialization)};
   if (!desc.fragment_code.empty()) {
@@ -226,7 +231,7 @@ Result<VkPipeline> make_graphics(const Device& device, const GraphicsPipelineDes
 Result<VkPipeline> make_compute(const Device& device, const ComputePipelineDesc& desc,
                                 VkPipelineLayout layout) {
   NERITIC_TRY(const ShaderModule module, ShaderModule::create(device, desc.name, desc.code));
-  const Specialization specialization(desc.constants);
+  const Specialization specialization(device, desc.constants);
   VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
   info.stage = stage_info(VK_SHADER_STAGE_COMPUTE_BIT, module, specialization);
   info.layout = layout;

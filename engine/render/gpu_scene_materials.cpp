@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 
 #include "engine/core/log.hpp"
@@ -11,6 +12,19 @@ namespace neritic::render {
 namespace {
 
 using shared::MaterialData;
+// The places that shaders/shared/material.glsl counts on.
+static_assert(sizeof(MaterialData) == 4 * 48 && offsetof(MaterialData, emissive) == 4 * 4 &&
+              offsetof(MaterialData, metallic) == 4 * 7 &&
+              offsetof(MaterialData, roughness) == 4 * 8 &&
+              offsetof(MaterialData, reflectance) == 4 * 9 &&
+              offsetof(MaterialData, normal_scale) == 4 * 10 &&
+              offsetof(MaterialData, occlusion_strength) == 4 * 11 &&
+              offsetof(MaterialData, alpha_cutoff) == 4 * 12 &&
+              offsetof(MaterialData, base_color_map) == 4 * 13 &&
+              offsetof(MaterialData, metal_rough_map) == 4 * 20 &&
+              offsetof(MaterialData, normal_map) == 4 * 27 &&
+              offsetof(MaterialData, occlusion_map) == 4 * 34 &&
+              offsetof(MaterialData, emissive_map) == 4 * 41);
 
 const std::vector<gpu::BindingDesc>& material_bindings() {
   static const std::vector<gpu::BindingDesc> bindings{

@@ -38,6 +38,7 @@ layout(location = 0) out vec4 out_color;
 #endif
 
 void main() {
+  take_material();
   int view = kMultiview ? gl_ViewIndex : 0;
   vec4 base = material_base_color(uv, color);
   vec3 along = position - views[view].eye;

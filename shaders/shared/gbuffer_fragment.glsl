@@ -38,6 +38,7 @@ layout(location = 4) out vec2 out_motion;
 #endif
 
 void main() {
+  take_material();
   vec4 base = material_base_color(uv, color);
   out_normal = octahedral_encode(fragment_normal(normal, tangent, uv));
   out_label = uvec2(label & 0xffffu, label >> 16);

@@ -1,10 +1,12 @@
 // A material's constants and textures (set 1), glTF 2.0 metallic-roughness. GLSL only.
 #ifndef NERITIC_MATERIAL_GLSL
 #define NERITIC_MATERIAL_GLSL
+#include "shared/even.glsl"
 
 // A uniform block, not a storage buffer: helper invocations at triangle edges must read it too, or the
 // derivatives there (so the mip level) are wrong. llvmpipe masks storage loads of helpers.
-layout(set = 1, binding = kMaterialConstants, scalar) uniform Material { MaterialData material; };
+layout(set = 1, binding = kMaterialConstants, scalar) uniform Material { MaterialData material_data; };
+layout(set = 1, binding = kMaterialConstants, scalar) uniform MaterialWords { float material_words[48]; };
 layout(set = 1, binding = kMaterialBaseColor) uniform sampler2D base_color_texture;
 layout(set = 1, binding = kMaterialMetalRough) uniform sampler2D metal_rough_texture;
 layout(set = 1, binding = kMaterialNormal) uniform sampler2D normal_texture;
@@ -13,6 +15,35 @@ layout(set = 1, binding = kMaterialEmissive) uniform sampler2D emissive_texture;
 
 layout(constant_id = kSpecMaterial) const uint kMaterialFlags = ~0u;
 bool material_has(uint flag) { return (kMaterialFlags & flag) != 0u; }
+
+// A number of MaterialData by its place, a constant: each lane reads another one of its row.
+float material_word(uint i) { return from_lane(material_words[(i & ~7u) + lane()], i & 7u); }
+vec3 material_vec3(uint i) { return vec3(material_word(i), material_word(i + 1u), material_word(i + 2u)); }
+TextureMapping material_mapping(uint i) {
+  return TextureMapping(material_vec3(i), material_vec3(i + 3u), floatBitsToUint(material_word(i + 6u)));
+}
+
+MaterialData material;
+// main() begins with this. In the order of MaterialData; what is not used costs nothing.
+void take_material() {
+  if (!by_lanes()) {
+    material = material_data;
+    return;
+  }
+  material.base_color = vec4(material_vec3(0u), material_word(3u));
+  material.emissive = material_vec3(4u);
+  material.metallic = material_word(7u);
+  material.roughness = material_word(8u);
+  material.reflectance = material_word(9u);
+  material.normal_scale = material_word(10u);
+  material.occlusion_strength = material_word(11u);
+  material.alpha_cutoff = material_word(12u);
+  material.base_color_map = material_mapping(13u);
+  material.metal_rough_map = material_mapping(20u);
+  material.normal_map = material_mapping(27u);
+  material.occlusion_map = material_mapping(34u);
+  material.emissive_map = material_mapping(41u);
+}
 
 // uv: both sets, xy and zw.
 vec2 mapped(TextureMapping map, vec4 uv) {

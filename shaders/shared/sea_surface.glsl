@@ -1,8 +1,36 @@
 // The wavy surface as seen from below and above: Snell's window with the refracted sky, total reflection
-// outside, the sun's glitter, whitecaps. GLSL only; the including file declares `sea`, a uniform block of type
-// Waves, and includes shared/water.glsl first. Slopes of waves too short for a pixel spread what is seen.
+// outside, the sun's glitter, whitecaps. GLSL only; the including file declares sea_data, a uniform block of
+// type Waves, includes shared/water.glsl first, and its main() begins with take_sea(). Slopes of waves too short for a pixel spread what is seen.
 #ifndef NERITIC_SEA_SURFACE_GLSL
 #define NERITIC_SEA_SURFACE_GLSL
+
+#include "shared/even.glsl"
+
+Waves sea;  // without its waves
+void take_sea() {
+  sea.count = sea_data.count;
+  sea.height_rms_m = sea_data.height_rms_m;
+  sea.slope2 = sea_data.slope2;
+  sea.fine_slope2 = sea_data.fine_slope2;
+  sea.foam_height_m = sea_data.foam_height_m;
+  sea.foam_shift = sea_data.foam_shift;
+  sea.eye_height_m = sea_data.eye_height_m;
+}
+
+// Waves first to first + kLanes - 1: a processor's lanes read one each. All lanes call these, or none.
+struct SomeWaves {
+  vec2 wave_number;
+  float amplitude_m, angle_rad;
+};
+SomeWaves some_waves(uint first) {
+  uint i = min(first + (by_lanes() ? lane() : 0u), kMaxWaves - 1u);
+  return SomeWaves(sea_data.waves[i].wave_number, sea_data.waves[i].amplitude_m, sea_data.waves[i].angle_rad);
+}
+Wave wave_of(SomeWaves some, uint first, uint k) {
+  if (!by_lanes()) return sea_data.waves[min(first + k, kMaxWaves - 1u)];
+  vec2 number = vec2(from_lane(some.wave_number.x, k), from_lane(some.wave_number.y, k));
+  return Wave(number, from_lane(some.amplitude_m, k), from_lane(some.angle_rad, k));
+}
 
 struct SeaPoint {
   float distance_m;  // along the sight
@@ -31,10 +59,15 @@ float wave_kept(float k) {
 
 float sea_height(vec2 at, float footprint_m) {
   float sum = 0.0;
-  for (uint i = 0u; i < min(sea.count, kHighWaves); ++i) {
-    vec2 number = sea.waves[i].wave_number;
-    float angle = dot(number, at) + sea.waves[i].angle_rad;
-    sum += wave_kept(length(number) * footprint_m) * sea.waves[i].amplitude_m * wave_sine(angle + 1.5707963);
+  uint count = min(sea.count, kHighWaves);
+  for (uint first = 0u; first < count; first += kLanes) {
+    SomeWaves some = some_waves(first);
+    [[unroll]] for (uint k = 0u; k < kLanes; ++k) {
+      Wave wave = wave_of(some, first, k);
+      if (first + k >= count) wave.amplitude_m = 0.0;
+      float angle = dot(wave.wave_number, at) + wave.angle_rad;
+      sum += wave_kept(length(wave.wave_number) * footprint_m) * wave.amplitude_m * wave_sine(angle + 1.5707963);
+    }
   }
   return sum;
 }
@@ -43,15 +76,19 @@ float sea_height(vec2 at, float footprint_m) {
 SeaPoint sea_at(vec2 at, float footprint_m) {
   SeaPoint point;
   vec3 sum = vec3(0.0);
-  float resolved = 0.0;
-  for (uint i = 0u; i < sea.count; ++i) {
-    vec2 number = sea.waves[i].wave_number;
-    float k = length(number);
-    if (k * footprint_m > 3.0) break;  // so are all that follow
-    float amplitude_m = sea.waves[i].amplitude_m * wave_kept(k * footprint_m);
-    sum.yz -= amplitude_m * wave_sine(dot(number, at) + sea.waves[i].angle_rad) * number;
-    float steep = amplitude_m * k;
-    resolved += 0.5 * steep * steep;
+  float resolved = 0.0, least_m = least_of(footprint_m);
+  for (uint first = 0u; first < sea.count; first += kLanes) {
+    SomeWaves some = some_waves(first);
+    if (length(wave_of(some, first, 0u).wave_number) * least_m > 3.0) break;  // so are all that follow
+    [[unroll]] for (uint i = 0u; i < kLanes; ++i) {
+      Wave wave = wave_of(some, first, i);
+      vec2 number = wave.wave_number;
+      float k = length(number);
+      float amplitude_m = first + i < sea.count ? wave.amplitude_m * wave_kept(k * footprint_m) : 0.0;
+      sum.yz -= amplitude_m * wave_sine(dot(number, at) + wave.angle_rad) * number;
+      float steep = amplitude_m * k;
+      resolved += 0.5 * steep * steep;
+    }
   }
   sum.x = sea_height(at, footprint_m);
   point.height_m = sum.x;
@@ -64,20 +101,26 @@ SeaPoint sea_at(vec2 at, float footprint_m) {
 // Farther off the surface is not told from the horizon, m.
 const float kFarthestSea_m = 3000.0;
 
-// Where a sight meets the surface. pixel_rad: of one pixel. Sights along the surface never do.
-bool sea_meets(vec3 eye, vec3 direction, float pixel_rad, out SeaPoint point) {
-  float over_m = eye.y - light.origin_depth_m;
-  float towards = over_m - sea.eye_height_m < 0.0 ? direction.y : -direction.y;
-  if (towards < 2e-3) return false;
-  float distance_m = abs(over_m - sea.eye_height_m) / towards;
+// Where a sight meets the surface, unless something ends it before. pixel_rad: of one pixel. Sights along the
+// surface never do.
+bool sea_meets(vec3 eye, vec3 direction, float pixel_rad, float sight_m, out SeaPoint point) {
+  float over_m = eye.y - light.origin_depth_m, off_m = over_m - sea.eye_height_m;
+  float towards = off_m < 0.0 ? direction.y : -direction.y;
+  bool may = towards >= 2e-3;
+  if (!may) towards = 1.0;
+  float distance_m = abs(off_m) / towards;
   float clearest = min(light.beam_attenuation.x, min(light.beam_attenuation.y, light.beam_attenuation.z));
   bool faded = direction.y > 0.0 && distance_m * clearest > kSeaFaded;
-  if (distance_m > kFarthestSea_m || faded) return false;
-  float footprint_m = 0.5 * pixel_rad * distance_m * inversesqrt(towards);
+  // No wave is higher than this, as in rows_of_sea() of engine/render/shade.cpp.
+  float room_m = 6.0 * sea.height_rms_m + 0.05;
+  may = may && distance_m <= kFarthestSea_m && !faded && abs(off_m) - room_m < sight_m * towards;
+  if (!for_any(may)) return false;
+  if (!may) direction = vec3(0.0, off_m < 0.0 ? 1.0 : -1.0, 0.0);  // any that meets it
+  float footprint_m = may ? 0.5 * pixel_rad * distance_m * inversesqrt(towards) : 1e9;
   distance_m = max((sea_height(eye.xz + direction.xz * distance_m, footprint_m) - over_m) / direction.y, 0.0);
   point = sea_at(eye.xz + direction.xz * distance_m, footprint_m);
   point.distance_m = max((point.height_m - over_m) / direction.y, 0.0);
-  return point.distance_m <= kFarthestSea_m;
+  return may && point.distance_m <= kFarthestSea_m;
 }
 
 // The sky's radiance in air: a clear sky is about half brighter at the horizon than overhead; its irradiance

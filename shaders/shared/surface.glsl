@@ -97,7 +97,7 @@ vec3 shade_surface(Surface s, vec3 to_eye, Seen seen) {
       around = irradiance * ((1.0 - direct) * above * seen.sky + (from_bottom(depth_m) + 0.02) * (1.0 - above));
     radiance += around * s.occlusion * seen.around * diffuse_color / kPi;
   }
-  for (uint i = 0u; i < lamp_count(); ++i) {
+  NERITIC_OVER_LAMPS {
     vec3 to_lamp = light.lamps[i].position - s.position;
     float distance_m = max(length(to_lamp), 1e-3);
     to_lamp /= distance_m;

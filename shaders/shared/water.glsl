@@ -7,6 +7,10 @@
 #define NERITIC_WATER_GLSL
 #include "shared/phase.h"
 #include "shared/visibility.h"
+#ifndef NERITIC_LAMP_PROFILE  // else as in shared/even_light.glsl
+#define NERITIC_LAMP_PROFILE(i, k) (light.lamps[i].profile[k])
+#define NERITIC_OVER_LAMPS for (uint i = 0u; i < lamp_count(); ++i)
+#endif
 
 const float kPi = 3.14159265358979;
 // Mean cosine of light that comes down diffusely: its radiance passes through 1 / this metres of water a
@@ -50,7 +54,7 @@ float beam_of(uint i, float cosine) {
                  float(kProfileSteps - 1u);
     uint low = min(uint(step), kProfileSteps - 2u);
     float between =
-        mix(light.lamps[i].profile[low], light.lamps[i].profile[low + 1u], step - float(low));
+        mix(NERITIC_LAMP_PROFILE(i, low), NERITIC_LAMP_PROFILE(i, low + 1u), step - float(low));
     return step <= float(kProfileSteps - 1u) ? between : 0.0;
   }
   return smoothstep(light.lamps[i].cos_outer, light.lamps[i].cos_inner, cosine);
@@ -240,7 +244,7 @@ vec3 lamp_glow(vec3 eye, vec3 direction, float length_m) {
   vec2 part_m = water_part(light.origin_depth_m - eye.y, direction, length_m);
   part_m.y = min(part_m.y, part_m.x + kFarthestGlow_m);
   if (part_m.y <= part_m.x) return sum;
-  for (uint i = 0u; i < lamp_count(); ++i) {
+  NERITIC_OVER_LAMPS {
     vec3 from_lamp = eye - light.lamps[i].position;
     float nearest_t = -dot(from_lamp, direction);
     float distance_m = max(length(from_lamp + direction * nearest_t), 0.05);
