@@ -12,42 +12,48 @@ layout(local_size_x = kShadeGroup, local_size_y = kShadeGroup) in;
 layout(set = 0, binding = kCausticsParams, scalar) uniform Params { CausticsParams params; };
 layout(set = 0, binding = kCausticsSums, scalar) buffer Sums { uint sums[]; };
 
-void add(uint level, uvec2 at, uint energy) {
-  uint n = params.texels;
-  atomicAdd(sums[(level * n + at.y % n) * n + at.x % n], energy);
+// at: from 0 to n, which is 0 again.
+void add(uint level, uint n, uvec2 at, uint energy) {
+  atomicAdd(sums[(level * n + (at.y < n ? at.y : 0u)) * n + (at.x < n ? at.x : 0u)], energy);
 }
 
 void main() {
+  // Read before any branch (shared/even.glsl).
+  uint n = params.texels, count = params.count, first_level = params.first_level, end_level = params.end_level;
+  float tile_m = params.tile_m, first_m = params.first_m, step = params.step;
+  vec3 travel_air = params.travel_air;
   uvec2 at = gl_GlobalInvocationID.xy;
-  if (at.x >= params.texels || at.y >= params.texels) return;
-  float texel_m = params.tile_m / float(params.texels);
+  if (at.x >= n || at.y >= n) return;
+  float texel_m = tile_m / float(n);
   vec2 place = (vec2(at) + 0.5) * texel_m;
   vec2 slope = vec2(0.0);
-  for (uint i = 0u; i < params.count; ++i) {
+  for (uint i = 0u; i < count; ++i) {
     CausticWave w = params.waves[i];
     slope -= w.amplitude_m * sin(dot(w.wave_number, place) + w.angle_rad) * w.wave_number;
   }
   vec3 normal = normalize(vec3(-slope.x, 1.0, -slope.y));
   // A slope that turns away from the sun lies in the shadow of its own crest: no steeper than grazing.
-  vec3 travel = params.travel_air;
+  vec3 travel = travel_air;
   float facing = dot(travel, normal);
   if (facing > -0.02) travel = normalize(travel - (facing + 0.02) * normal);
   vec3 below = refract(travel, normal, 1.0 / kWaterIndex);
-  vec3 flat_below = refract(params.travel_air, vec3(0.0, 1.0, 0.0), 1.0 / kWaterIndex);
+  vec3 flat_below = refract(travel_air, vec3(0.0, 1.0, 0.0), 1.0 / kWaterIndex);
   vec2 aside = below.xz / max(-below.y, 0.05) - flat_below.xz / max(-flat_below.y, 0.05);
-  float depth_m = params.first_m;
-  for (uint level = 0u; level < params.first_level; ++level) depth_m *= params.step;
-  for (uint level = params.first_level; level < params.end_level; ++level) {
+  float depth_m = first_m;
+  for (uint level = 0u; level < first_level; ++level) depth_m *= step;
+  for (uint level = first_level; level < end_level; ++level) {
     // From the texel's corner; far enough into positive numbers that rounding is towards zero.
     vec2 lands = vec2(at) + aside * (depth_m / texel_m);
     vec2 whole = floor(lands);
     uvec2 part = uvec2((lands - whole) * float(kCausticPart) + 0.5);
-    uvec2 first = uvec2(ivec2(mod(whole, vec2(params.texels))));
+    uvec2 first = uvec2(ivec2(mod(whole, vec2(n))));
+    if (first.x >= n) first.x -= n;  // a quotient that was rounded up
+    if (first.y >= n) first.y -= n;
     uvec2 rest = kCausticPart - part;
-    add(level, first, rest.x * rest.y);
-    add(level, first + uvec2(1, 0), part.x * rest.y);
-    add(level, first + uvec2(0, 1), rest.x * part.y);
-    add(level, first + uvec2(1, 1), part.x * part.y);
-    depth_m *= params.step;
+    add(level, n, first, rest.x * rest.y);
+    add(level, n, first + uvec2(1, 0), part.x * rest.y);
+    add(level, n, first + uvec2(0, 1), rest.x * part.y);
+    add(level, n, first + uvec2(1, 1), part.x * part.y);
+    depth_m *= step;
   }
 }
