@@ -20,11 +20,13 @@ struct WorldParticle {
   std::uint32_t kind = 0, seed = 0;
 };
 
-// Snow within range_m of a point, that drifts and stays in the water while cameras move. views:
-// only what lies in cells that one of them sees. share: of the snow.
+// Blur and streaks make a spot wider than its particle by this.
+inline constexpr double kSpotRoom_m = 0.02;
+
+// Snow within range_m of a point, that drifts and stays in the water while cameras move. share: of
+// the snow.
 std::vector<WorldParticle> snow_around(const scene::Snow& snow, std::uint64_t seed,
-                                       const Vec3& center_m, double time_s,
-                                       const ViewSet* views = nullptr, double share = 1.0);
+                                       const Vec3& center_m, double time_s, double share = 1.0);
 
 // Speed at which a bubble rises in still water.
 double bubble_speed_m_s(double radius_m);
@@ -36,7 +38,8 @@ void add_silt(const scene::MotionSource& motion, const scene::SiltSource& source
               std::uint64_t number, std::uint64_t seed, double time_s,
               std::vector<WorldParticle>& out);
 
-// All particles that a view set sees at a time, relative to its origin, from far to near.
+// All particles that a view set sees at a time, relative to its origin, from far to near; snow by
+// the cells of its lattice.
 // shutter_s: of the exposure, for streaks.
 struct ViewParticles {
   std::vector<shared::Particle> particles;

@@ -45,8 +45,9 @@ WorldParticle risen(const scene::BubbleSource& source, const Vec3& from_m, doubl
   // Ellipsoidal bubbles swing by about their own width, some five times a second.
   const double swing = 2.0 * kPi * (5.0 * age_s + random_uniform(key, index + 2));
   const double side = 1.5 * radius_m * std::sin(swing);
-  bubble.position_m = from_m + Vec3(off * std::cos(turn) + side * std::cos(2.0 * turn), rise_m,
-                                    off * std::sin(turn) + side * std::sin(2.0 * turn));
+  const double c = std::cos(turn), s = std::sin(turn);  // those of twice the turn follow from them
+  bubble.position_m =
+      from_m + Vec3(off * c + side * (c * c - s * s), rise_m, off * s + side * 2.0 * s * c);
   bubble.velocity_m_s = Vec3(0.0, speed, 0.0);
   const auto pressure = [](double y_m) {
     return kAir_pa + kDensity_kg_m3 * kFreeFall_m_s2 * std::max(-y_m, 0.0);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "engine/core/random.hpp"
 
@@ -24,6 +23,14 @@ std::uint64_t word(std::int64_t cell) {
 // A normal number of two uniform ones (Box and Muller 1958).
 double normal(double u, double v) {
   return std::sqrt(-2.0 * std::log(1.0 - u)) * std::cos(2.0 * kPi * v);
+}
+
+// Whether a grain, lit as the water about it is, changes a pixel by less than half a level of 255:
+// its soft spot has twice the light of its middle spread over a disk of 0.75 pixels at least
+// (shaders/particles.vert).
+bool fades_away(double radius_m, double opacity, double range2_m2, double pixels) {
+  const double own2 = radius_m * radius_m * pixels * pixels / std::max(range2_m2, 1e-6);
+  return 2.0 * own2 / (own2 + 0.56) * opacity < 0.003;
 }
 
 double smooth(double low, double high, double x) {
@@ -74,10 +81,7 @@ void SnowField::forget_unused() {
   std::erase_if(cells_, [&](const auto& cell) { return cell.second.used + kKeptCalls < calls_; });
 }
 
-void SnowField::append(const scene::Snow& snow, std::uint64_t seed, const Vec3& center_m,
-                       double time_s, const ViewSet* views, double share,
-                       std::vector<WorldParticle>& out) {
-  if (!(snow.density_m3 > 0.0 && share > 0.0)) return;
+void SnowField::begin(const scene::Snow& snow, std::uint64_t seed) {
   if (seed != seed_ || snow.density_m3 != density_m3_ || snow.diameter_m != diameter_m_ ||
       snow.spread != spread_) {
     cells_.clear();
@@ -87,45 +91,86 @@ void SnowField::append(const scene::Snow& snow, std::uint64_t seed, const Vec3& 
     spread_ = snow.spread;
   }
   ++calls_;
+}
+
+// Shows each cell in range by its middle and the radius about it, from the center, and each grain
+// of those wanted: the grain, its place from the center, and its opacity there.
+template <typename Wanted, typename Visit>
+void SnowField::visit(const scene::Snow& snow, const Vec3& center_m, double time_s, double share,
+                      const Wanted& wanted, const Visit& visit_grain) {
   const double cell_m = cell_size_m(snow.density_m3);
   const double half_m = 0.5 * std::sqrt(3.0) * cell_m;  // of a cell's diagonal
   const double widest_m = 0.5 * snow.diameter_m * std::exp(2.0 * snow.spread) + 0.02;
-  const Vec3 drift_m = snow.drift_m_s * time_s;
-  const Vec3 center = center_m - drift_m;  // in the water's own frame
+  const Vec3 center = center_m - snow.drift_m_s * time_s;  // in the water's own frame
   const auto low = [&](int axis) {
     return static_cast<std::int64_t>(std::floor((center[axis] - snow.range_m) / cell_m));
   };
   const auto high = [&](int axis) {
     return static_cast<std::int64_t>(std::floor((center[axis] + snow.range_m) / cell_m));
   };
-  std::optional<SphereCulling> culling;
-  if (views) culling.emplace(*views);
+  const double reach_m = snow.range_m + half_m, range2_m2 = snow.range_m * snow.range_m;
   std::size_t seen = 0;
   for (std::int64_t y = low(1); y <= high(1); ++y)
     for (std::int64_t z = low(2); z <= high(2); ++z)
       for (std::int64_t x = low(0); x <= high(0); ++x) {
         // Most cells lie beside or behind the views, or out of range.
         const Vec3 middle = cell_m * (Vec3(x, y, z) + 0.5) - center;
-        const double reach_m = snow.range_m + half_m;
         if (glm::dot(middle, middle) >= reach_m * reach_m) continue;
-        if (culling && !culling->may_see(middle + center_m - views->origin_m(), half_m + widest_m))
-          continue;
+        if (!wanted(middle, half_m + widest_m)) continue;
         ++seen;
         for (const Grain& grain : grains_of({x, y, z})) {
           if (!(grain.look * 0x1p-32 < share)) continue;
           const Vec3 at = grain.place_m - center;
-          const double range_m = glm::length(at);
-          const Vec3 position = center_m + at;
-          if (range_m >= snow.range_m || position.y >= 0.0) continue;
-          out.push_back({position, snow.drift_m_s, grain.radius_m,
-                         grain.opacity * (1.0 - smooth(0.7 * snow.range_m, snow.range_m, range_m)) *
-                             smooth(kNearest_m, kNear_m, range_m),
-                         shared::kParticleSnow, grain.look});
+          const double distance2_m2 = glm::dot(at, at);
+          if (distance2_m2 >= range2_m2 || center_m.y + at.y >= 0.0) continue;
+          const double range_m = std::sqrt(distance2_m2);
+          visit_grain(grain, at,
+                      grain.opacity * (1.0 - smooth(0.7 * snow.range_m, snow.range_m, range_m)) *
+                          smooth(kNearest_m, kNear_m, range_m));
         }
       }
   // Cells out of sight are let go of once they are more than those in sight; looking at all of them
   // each time would cost more than they do.
   if (cells_.size() > 4 * seen + 1024 && calls_ % kKeptCalls == 0) forget_unused();
+}
+
+void SnowField::place(const scene::Snow& snow, std::uint64_t seed, const ViewSet& views,
+                      double time_s, double share, double faint_pixels,
+                      std::vector<shared::Particle>& out, std::vector<Run>& runs) {
+  if (!(snow.density_m3 > 0.0 && share > 0.0)) return;
+  begin(snow, seed);
+  const SphereCulling culling(views);
+  const Vec3f moved(snow.drift_m_s * snow.shutter_s);
+  bool whole = false;  // the cell is in sight
+  const auto wanted = [&](const Vec3& middle_m, double radius_m) {
+    if (!culling.may_see(middle_m, radius_m)) return false;
+    whole = culling.sees_all_of(middle_m, radius_m);
+    runs.push_back({glm::dot(middle_m, middle_m), out.size(), 0});
+    return true;
+  };
+  visit(snow, views.origin_m(), time_s, share, wanted,
+        [&](const Grain& grain, const Vec3& at_m, double opacity) {
+          if (!(opacity > 0.0)) return;
+          if (faint_pixels > 0.0 &&
+              fades_away(grain.radius_m, opacity, glm::dot(at_m, at_m), faint_pixels))
+            return;
+          if (!whole && !culling.may_see(at_m, grain.radius_m + kSpotRoom_m)) return;
+          out.push_back({Vec3f(at_m), static_cast<float>(grain.radius_m), moved,
+                         static_cast<float>(opacity), shared::kParticleSnow, grain.look});
+          ++runs.back().count;
+        });
+}
+
+void SnowField::append(const scene::Snow& snow, std::uint64_t seed, const Vec3& center_m,
+                       double time_s, double share, std::vector<WorldParticle>& out) {
+  if (!(snow.density_m3 > 0.0 && share > 0.0)) return;
+  begin(snow, seed);
+  visit(
+      snow, center_m, time_s, share, [](const Vec3&, double) { return true; },
+      [&](const Grain& grain, const Vec3& at_m, double opacity) {
+        out.push_back({center_m + at_m, snow.drift_m_s, grain.radius_m, opacity,
+                       shared::kParticleSnow, grain.look});
+      });
 }
 
 }  // namespace neritic::render

@@ -12,10 +12,22 @@ namespace neritic::render {
 
 class SnowField {
  public:
-  // Appends the snow within range_m of a point, as snow_around says. Other settings or another seed
-  // than the call before it forget all cells.
+  // A cell's grains among those placed, and how far off its middle is.
+  struct Run {
+    double distance2_m2 = 0.0;
+    std::size_t first = 0, count = 0;
+  };
+
+  // Places the snow that a view set sees, within range_m of its origin and relative to it, cell by
+  // cell; share: of the grains. faint_pixels: that a metre takes at one metre ahead; if not 0,
+  // grains too faint to be seen there are left out. Other settings or another seed than the call
+  // before it forget all cells.
+  void place(const scene::Snow& snow, std::uint64_t seed, const ViewSet& views, double time_s,
+             double share, double faint_pixels, std::vector<shared::Particle>& out,
+             std::vector<Run>& runs);
+  // All of it around a point, as snow_around says.
   void append(const scene::Snow& snow, std::uint64_t seed, const Vec3& center_m, double time_s,
-              const ViewSet* views, double share, std::vector<WorldParticle>& out);
+              double share, std::vector<WorldParticle>& out);
   std::size_t cells() const { return cells_.size(); }
 
  private:
@@ -36,6 +48,10 @@ class SnowField {
     std::uint64_t used = 0;  // the call that saw it last
   };
 
+  void begin(const scene::Snow& snow, std::uint64_t seed);
+  template <typename Wanted, typename Visit>
+  void visit(const scene::Snow& snow, const Vec3& center_m, double time_s, double share,
+             const Wanted& wanted, const Visit& visit_grain);
   const std::vector<Grain>& grains_of(const Place& place);
   void forget_unused();
 

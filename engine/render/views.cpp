@@ -110,4 +110,13 @@ bool SphereCulling::may_see(const Vec3& center_m, double radius_m) const {
   return false;
 }
 
+bool SphereCulling::sees_all_of(const Vec3& center_m, double radius_m) const {
+  const auto inside = [&](const Plane& plane) {
+    return glm::dot(plane.normal, center_m) + plane.offset_m >= radius_m;
+  };
+  if (within_ && !inside(*within_)) return false;
+  return std::ranges::any_of(
+      views_, [&](const auto& planes) { return std::ranges::all_of(planes, inside); });
+}
+
 }  // namespace neritic::render

@@ -65,6 +65,8 @@ class SphereCulling {
  public:
   explicit SphereCulling(const ViewSet& set);
   bool may_see(const Vec3& center_from_origin_m, double radius_m) const;
+  // Whether one view sees all of the sphere.
+  bool sees_all_of(const Vec3& center_from_origin_m, double radius_m) const;
 
  private:
   struct Plane {

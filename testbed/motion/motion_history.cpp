@@ -37,9 +37,15 @@ void MotionHistory::add(MotionSnapshot snapshot) {
 
 // The age of the newest snapshot that is not later than time_s; the oldest where all are later.
 std::size_t MotionHistory::age_before(double time_s) const {
-  std::size_t age = 0;
-  while (age + 1 < count_ && at_age(age).time_s > time_s) ++age;
-  return age;
+  std::size_t newest = 0, oldest = count_ - 1;
+  while (newest < oldest) {
+    const std::size_t middle = (newest + oldest) / 2;
+    if (at_age(middle).time_s > time_s)
+      newest = middle + 1;
+    else
+      oldest = middle;
+  }
+  return newest;
 }
 
 std::optional<scene::MotionAt> MotionHistory::at(std::size_t object, double time_s) const {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <glm/gtc/packing.hpp>
+#include <set>
 
 #include "engine/gpu/frames.hpp"
 #include "engine/render/particles.hpp"
@@ -162,8 +163,8 @@ TEST(Snow, KeptCellsGiveTheGrainsOfCellsThatAreMadeAnew) {
   SnowField field;
   const auto check = [&](const Vec3& center_m, double time_s, std::uint64_t seed) {
     std::vector<WorldParticle> kept;
-    field.append(snow, seed, center_m, time_s, nullptr, 0.8, kept);
-    const auto made = snow_around(snow, seed, center_m, time_s, nullptr, 0.8);
+    field.append(snow, seed, center_m, time_s, 0.8, kept);
+    const auto made = snow_around(snow, seed, center_m, time_s, 0.8);
     ASSERT_EQ(kept.size(), made.size());
     for (std::size_t i = 0; i < kept.size(); ++i) {
       EXPECT_EQ(kept[i].position_m, made[i].position_m);
@@ -178,6 +179,38 @@ TEST(Snow, KeptCellsGiveTheGrainsOfCellsThatAreMadeAnew) {
   check(Vec3(0.0, -20.0, 0.0), 0.0, 6);
   snow.density_m3 = 900.0;
   check(Vec3(0.0, -20.0, 0.0), 0.0, 6);
+}
+
+// What a view set gets: all that is in sight of what is around, whether its cell is wholly in sight
+// or not, and cells from far to near.
+TEST(Snow, AViewGetsTheGrainsInItsSight) {
+  scene::Scene scene;
+  scene.water.emplace();
+  scene.water->snow = scene::Snow{.density_m3 = 300.0, .range_m = 2.5};
+  const scene::MotionSource motion(scene);
+  ViewDesc view;
+  view.world_from_view = {Vec3(3.0, -9.0, 1.0), from_yaw_pitch_roll(0.3, -0.2, 0.1)};
+  view.width = view.height = 600;
+  const ViewSet views{.views = {view}};
+  SnowField field;
+  const ViewParticles seen = view_particles(motion, field, 7, views, 2.0);
+  const Vec3 origin = views.origin_m();
+  std::size_t expected = 0;
+  std::set<std::uint32_t> looks;
+  for (const shared::Particle& particle : seen.particles) looks.insert(particle.seed);
+  for (const WorldParticle& grain : snow_around(*scene.water->snow, 7, origin, 2.0)) {
+    const double pixels = 600.0 / (view.tangents.right - view.tangents.left);
+    const double own = grain.radius_m * pixels / glm::distance(grain.position_m, origin);
+    const bool faint = 2.0 * own * own / (own * own + 0.56) * grain.opacity < 0.003;
+    if (faint || !any_view_sees(views, grain.position_m - origin, grain.radius_m + kSpotRoom_m))
+      continue;
+    ++expected;
+    EXPECT_TRUE(looks.contains(grain.seed));
+  }
+  EXPECT_GT(expected, 500u);
+  EXPECT_EQ(seen.particles.size(), expected);
+  EXPECT_GT(glm::length(Vec3(seen.particles.front().position)),
+            glm::length(Vec3(seen.particles.back().position)));
 }
 
 TEST(Snow, IsFiniteFarOutAndNoneIsAboveTheWater) {
