@@ -23,6 +23,9 @@ const SwimPoint& point_of(const SwimTradeoff& t, const std::string& swim, diver:
 TEST(SwimTradeoff, ErrorsFallWithStepsAndStripsAndThePlanarModelIsFarther) {
   int done = 0;
   SwimTradeoffOptions options{.quick = true};
+  options.truth_step_s = 0.5e-3;
+  options.strips = {1, 4, 6, 16};
+  options.steps_ms = {1, 2, 1e3 / 240, 8, 12.5};
   options.step = [&] { ++done; };
   const SwimTradeoff t = run_swim_tradeoff(options);
   EXPECT_EQ(static_cast<std::uint64_t>(done), steps(options));
