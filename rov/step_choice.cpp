@@ -12,9 +12,7 @@ namespace {
 // The last is 1.5e-9 m off what `tradeoff physics` takes for true, which itself is sure to 9e-9 m.
 constexpr MeasuredRate kRates[] = {{80.0, 7e-4, 87.0}, {1000.0, 1.0e-8, 664.0}};
 
-constexpr MeasuredContact kContacts[] = {
-    {1.0 / 80.0, 3.3e-2},   {1.0 / 160.0, 2.0e-2},  {1.0 / 320.0, 8.2e-3},  {1.0 / 640.0, 5.5e-3},
-    {1.0 / 1280.0, 2.8e-3}, {1.0 / 1920.0, 1.7e-3}, {1.0 / 2560.0, 7.7e-4}, {1.0 / 3840.0, 4.4e-4}};
+constexpr MeasuredContact kContacts[] = {{0.0, 3.3e-2}, {1e-4, 2e-4}, {1e-5, 5e-5}, {1e-6, 1e-5}};
 
 }  // namespace
 
@@ -36,9 +34,7 @@ Result<StepChoice> cheapest_step(double max_error_m, bool among_things) {
     return refusal("max_error_m", fmt::format("{}", max_error_m),
                    fmt::format("a number from {}{}", least_m,
                                among_things ? " where something solid can be touched" : ""));
-  if (!among_things) return StepChoice{rate->hz, 1};
-  const double parts = std::ceil(1.0 / (rate->hz * contact->step_s) - 1e-9);
-  return StepChoice{rate->hz, std::max(1, static_cast<int>(parts))};
+  return StepChoice{rate->hz, among_things ? contact->within_m : 0.0};
 }
 
 }  // namespace neritic::rov

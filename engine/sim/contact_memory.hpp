@@ -10,6 +10,9 @@
 namespace neritic::sim {
 
 struct SolverMemory {
+  // Rounds go on until what they change is next to nothing: for steps that are compared with each
+  // other. Else some load may still move between contacts on one line.
+  bool precise = false;
   std::vector<SolverContact> rows;
   std::vector<ContactImpulse> impulses;
   Conjugate conjugate;

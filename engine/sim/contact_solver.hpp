@@ -66,5 +66,7 @@ ContactSolution solve_contacts(std::span<const BodyContact> contacts,
 // The time within dt_s at which the body first hits, faster than kBounce_m_s, a contact that it
 // does not touch yet; dt_s: none.
 double time_to_hit(std::span<const BodyContact> contacts, const Twist& velocity, double dt_s);
+// Whether one is met within dt_s faster than kBounce_m_s.
+bool meets_hard(std::span<const BodyContact> contacts, const Twist& velocity, double dt_s);
 
 }  // namespace neritic::sim

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "engine/sim/contact_memory.hpp"
 #include "engine/sim/snapshot.hpp"
@@ -103,13 +104,14 @@ class Mover {
  public:
   Mover(const StaticWorld& world, const BodyShape& shape, const InverseMass& inverse_mass,
         const Pose& before, const BodyMotion& free, double dt_s, ContactMemory& memory,
-        MotionReport& told)
+        MotionReport& told, const Twist* started)
       : world_(world),
         shape_(shape),
         inverse_mass_(inverse_mass),
         free_(free),
         memory_(memory),
         told_(told),
+        started_(started ? std::optional(in_world(*started, before.rotation)) : std::nullopt),
         now_(before),
         target_(free.world_from_body),
         solved_in_(free.world_from_body.rotation),
@@ -150,7 +152,10 @@ class Mover {
     memory_.passable.clear();
     cut_ = 1.0;
     for (const Contact& contact : contacts) {
-      if (told_.pieces == 1) told_.deepest_m = std::max(told_.deepest_m, -contact.gap_m);
+      if (told_.pieces == 1) {
+        told_.deepest_m = std::max(told_.deepest_m, -contact.gap_m);
+        told_.lies = told_.lies || contact.gap_m < kLies_m;
+      }
       if (contact.inside || contact.gap_m < -kDeep_m) memory_.passable.push_back(contact.thing);
     }
     // In the axes at the end of the way, which the free velocity is in.
@@ -169,6 +174,7 @@ class Mover {
       return;
     }
     told_.touched = true;
+    told_.hits += meets_hard(body_contacts, free, until_s) || closes(contacts, solution) ? 1 : 0;
     told_.converged = told_.converged && solution.converged;
     for (std::size_t i = 0; i < contacts.size(); ++i)
       told_.impulse_n_s += contacts[i].normal * solution.impulses[i].normal_n_s +
@@ -177,6 +183,19 @@ class Mover {
     const WorldTwist push = in_world(solution.push, axes);
     solved_in_ = axes;
     aim({velocity_.linear + push.linear, velocity_.angular + push.angular}, until_s);
+  }
+
+  // Whether one that acts is met, rather than lain on, in the step's first piece.
+  bool closes(std::span<const Contact> contacts, const ContactSolution& solution) const {
+    if (!started_ || told_.pieces > 1) return false;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const Vec3 arm_m = contacts[i].point_m - now_.position_m;
+      const Vec3 speed_m_s = started_->linear + glm::cross(started_->angular, arm_m);
+      if (solution.impulses[i].normal_n_s > 0.0 &&
+          glm::dot(contacts[i].normal, speed_m_s) < -kSoft_m_s)
+        return true;
+    }
+    return false;
   }
 
   // Sets out for where this velocity leads in so long, or on the first part of the way.
@@ -198,6 +217,7 @@ class Mover {
   const BodyMotion& free_;
   ContactMemory& memory_;
   MotionReport& told_;
+  const std::optional<WorldTwist> started_;
   Pose now_, target_;
   Quat solved_in_;  // axes in which the velocity was last solved
   WorldTwist velocity_;
@@ -220,11 +240,12 @@ Pose moved(const Pose& world_from_body, const Twist& velocity, double duration_s
 
 BodyMotion move_body(const StaticWorld& world, const BodyShape& shape,
                      const InverseMass& inverse_mass, const Pose& before, const BodyMotion& free,
-                     double dt_s, ContactMemory& memory, MotionReport* report) {
+                     double dt_s, ContactMemory& memory, MotionReport* report,
+                     const Twist* started) {
   MotionReport unread;
   MotionReport& told = report ? *report : unread;
   told = {};
-  return Mover(world, shape, inverse_mass, before, free, dt_s, memory, told).run();
+  return Mover(world, shape, inverse_mass, before, free, dt_s, memory, told, started).run();
 }
 
 BodyMotion move_body(const StaticWorld& world, const BodyShape& shape,

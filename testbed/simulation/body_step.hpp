@@ -21,9 +21,9 @@ SolidBody solid_body(const rov::Vehicle& vehicle);
 // How a step is taken.
 struct StepMethod {
   rov::Integrator integrator = rov::Integrator::kGuarded;
-  // The number of parts into which a step with a contact is cut, since contacts are of first order
-  // in its length. 1: it is not cut.
-  int contact_parts = 1;
+  // Over 0: a step with a contact is halved until a half changes it by no more than this, m, and
+  // goes on where the halves lead: second order. 0: it is one step, of first order.
+  double contact_error_m = 0.0;
 };
 
 struct VehicleStep {
@@ -56,7 +56,7 @@ void set_motion(const sim::BodyMotion& motion, rov::State& state);
 bool part_vehicles(const VehicleStep& a, rov::State& free_a, const VehicleStep& b,
                    rov::State& free_b, sim::PairMemory& memory);
 // The step with contacts. Axes of rov and of sim differ by exchanged components alone, so a vehicle
-// that touches nothing keeps every bit. parted: the step is not cut into parts.
+// that touches nothing keeps every bit. parted: the step is not halved.
 rov::State step_among(const sim::StaticWorld& solid, const VehicleStep& step,
                       const rov::State& free, bool parted, sim::ContactMemory& memory,
                       ContactReport* report = nullptr);

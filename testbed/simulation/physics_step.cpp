@@ -262,15 +262,12 @@ VehicleStep PhysicsWorld::whole_step(const StepCall& call, std::size_t i) const 
 VehicleStep PhysicsWorld::part_step(const StepCall& call, std::size_t i) const {
   const PhysicsVehicle& vehicle = vehicles_[i];
   const VehicleScratch& own = call.scratch.vehicles[i];
-  StepMethod method = method_;
-  const double share = own.part.to - own.part.from;
-  method.contact_parts = static_cast<int>(std::ceil(share * method.contact_parts - 1e-6));
   return {vehicle.kind.solid,
           vehicle.vehicle,
           call.after.vehicles()[i].body,
           own.acting,
           length_s(call.time, own.part),
-          method};
+          method_};
 }
 
 void PhysicsWorld::begin_vehicle(const StepCall& call, std::size_t i, unsigned thread) const {

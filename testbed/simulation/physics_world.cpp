@@ -144,14 +144,14 @@ Status PhysicsWorld::choose_step(const scene::Scene& scene) {
   const auto choice = rov::cheapest_step(physics.max_error_m, solid_.counts().things > 0);
   if (!choice.ok()) return bad_input("{}: physics.{}", scene.path, choice.error().message);
   step_s_ = 1.0 / choice->hz;
-  method_ = {rov::Integrator::kGuarded, choice->contact_parts};
+  method_ = {rov::Integrator::kGuarded, choice->contact_error_m};
   return {};
 }
 
 Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index) {
   const scene::Object& object = scene.objects[index];
   const scene::Dynamics& dynamics = *object.dynamics;
-  NERITIC_TRY(const VehicleKind* kind, kinds_.of(scene, object, step_s_, method_));
+  NERITIC_TRY(const VehicleKind* kind, kinds_.of(scene, object, step_s_));
   NERITIC_TRY_STATUS(check_anchor(scene, object, kind->model.vehicle.tether.has_value()));
   PhysicsVehicle out{.name = object.name, .object = index, .kind = *kind};
   out.failed_thrusters = dynamics.failed_thrusters;

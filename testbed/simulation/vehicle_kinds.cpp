@@ -54,8 +54,7 @@ std::vector<Instants> instants_of(const rov::VehicleFile& file, double step_s) {
 }  // namespace
 
 Result<const VehicleModel*> VehicleKinds::model_of(const scene::Scene& scene,
-                                                   const scene::Object& object, double step_s,
-                                                   const StepMethod& method) {
+                                                   const scene::Object& object, double step_s) {
   const std::filesystem::path& path = object.dynamics->file;
   auto& known = models_[path.string()];
   if (known) return known.get();
@@ -66,19 +65,19 @@ Result<const VehicleModel*> VehicleKinds::model_of(const scene::Scene& scene,
   model.hash = hash_of(text, model.file);
   model.instants = instants_of(model.file, step_s);
   NERITIC_TRY(model.vehicle, rov::make_vehicle(model.file.parameters));
-  rov::prepare_steps(model.vehicle, std::array{step_s, step_s / method.contact_parts});
+  rov::prepare_steps(model.vehicle, std::array{step_s});
   known = std::make_unique<const VehicleModel>(std::move(model));
   return known.get();
 }
 
 Result<const VehicleKind*> VehicleKinds::of(const scene::Scene& scene, const scene::Object& object,
-                                            double step_s, const StepMethod& method) {
+                                            double step_s) {
   const scene::Dynamics& dynamics = *object.dynamics;
   auto& known =
       kinds_[{dynamics.file.string(), dynamics.failed_thrusters, object.model,
               std::array{object.scale.x, object.scale.y, object.scale.z}, object.collision}];
   if (known) return known.get();
-  NERITIC_TRY(const VehicleModel* model, model_of(scene, object, step_s, method));
+  NERITIC_TRY(const VehicleModel* model, model_of(scene, object, step_s));
   NERITIC_TRY_STATUS(check_thrusters(scene, object, model->vehicle));
   VehicleKind kind{.model = *model,
                    .allocator = rov::Allocator(model->vehicle, dynamics.failed_thrusters),

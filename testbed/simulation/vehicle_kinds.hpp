@@ -38,13 +38,13 @@ struct VehicleKind {
 class VehicleKinds {
  public:
   // The kind of a vehicle of the scene whose steps take step_s: one object for all of a kind, valid
-  // as long as this. Always the same scene, step and method. Errors in one line.
+  // as long as this. Always the same scene and step. Errors in one line.
   Result<const VehicleKind*> of(const scene::Scene& scene, const scene::Object& object,
-                                double step_s, const StepMethod& method);
+                                double step_s);
 
  private:
   Result<const VehicleModel*> model_of(const scene::Scene& scene, const scene::Object& object,
-                                       double step_s, const StepMethod& method);
+                                       double step_s);
 
   // File, failed thrusters, drawn model, scale, collision.
   using Key = std::tuple<std::string, std::uint64_t, int, std::array<double, 3>, scene::Collision>;

@@ -74,14 +74,14 @@ TEST(PhysicsTradeoff, ErrorsFallWithTheStepAndTheGuardHoldsAtAny) {
   }
   // Plain RK4 over a lag that is four times as fast as the step.
   EXPECT_FALSE(point(t, "lag", Integrator::kRk4, 50.0).error_m < 0.01);
-  // Contacts are of first order, whatever integrates the rest, and so by parts of a step.
+  // Contacts in whole steps are of first order, whatever integrates the rest.
   for (const char* flight : {"contact, lag", "contact, no lag", "bounce"}) {
     const double at_1_ms = point(t, flight, Integrator::kGuarded, 1.0).error_m;
     EXPECT_LT(at_1_ms, 5e-3) << flight;
     EXPECT_GT(point(t, flight, Integrator::kGuarded, 25.0).error_m, 5.0 * at_1_ms) << flight;
   }
-  ASSERT_EQ(t.parts.size(), 36u);
-  EXPECT_LT(t.parts[5].error_m, 0.2 * t.parts[0].error_m);
+  ASSERT_EQ(t.halved.size(), 36u);
+  for (const PhysicsPoint& p : t.halved) EXPECT_LE(p.error_m, 20.0 * p.within_m) << p.flight;
   const PhysicsPoint* best = cheapest(t, 1e-5);
   ASSERT_NE(best, nullptr);
   EXPECT_LE(best->error_m, 1e-5);
@@ -129,16 +129,17 @@ TEST(PhysicsTradeoff, WhatAnErrorChoosesHoldsUnderControlInACurrent) {
 TEST(PhysicsTradeoff, WhatAnErrorChoosesHoldsOnEveryFlight) {
   std::vector<Flight> flights;
   flights.push_back(square_flight(true, 5.0).value());
-  flights.push_back(contact_flight(true, 13.0));  // on the sand, along it, off, against the wall
+  flights.push_back(contact_flight(true, 4.0));  // a corner first onto the sand, and along it
+  flights.push_back(contact_mission_flight(4.0));
   flights.push_back(bounce_flight(5.0));
   flights.push_back(slide_flight(5.0));
   flights.push_back(roll_flight(5.0));
-  for (const double asked_m : {3.5e-2, 3e-3, 4.5e-4}) {
+  for (const double asked_m : {3.5e-2, 1e-2, 1e-3, 1e-4, 1e-5}) {
     const auto choice = rov::cheapest_step(asked_m, true);
     ASSERT_TRUE(choice.ok()) << choice.error().message;
     for (const Flight& flight : flights)
       EXPECT_LE(
-          flown_error(flight, 1.0 / choice->hz, {Integrator::kGuarded, choice->contact_parts}).m,
+          flown_error(flight, 1.0 / choice->hz, {Integrator::kGuarded, choice->contact_error_m}).m,
           asked_m)
           << flight.name;
   }
@@ -148,8 +149,10 @@ TEST(PhysicsTradeoff, AnErrorBecomesTheCheapestRateThatHoldsIt) {
   EXPECT_EQ(rov::cheapest_step(1e-3, false)->hz, 80.0);
   EXPECT_EQ(rov::cheapest_step(1e-5, false)->hz, 1000.0);
   EXPECT_EQ(rov::cheapest_step(1.2e-8, false)->hz, 1000.0);
-  EXPECT_EQ(rov::cheapest_step(1e-2, true)->contact_parts, 4);
-  EXPECT_EQ(rov::cheapest_step(1e-2, false)->contact_parts, 1);
+  EXPECT_EQ(rov::cheapest_step(5e-2, true)->contact_error_m, 0.0);
+  EXPECT_EQ(rov::cheapest_step(1e-2, true)->contact_error_m, 1e-4);
+  EXPECT_EQ(rov::cheapest_step(1e-2, false)->contact_error_m, 0.0);
+  EXPECT_TRUE(rov::cheapest_step(1e-5, true).ok());
   EXPECT_FALSE(rov::cheapest_step(1e-12, false).ok());
   EXPECT_FALSE(rov::cheapest_step(1e-6, true).ok());
   EXPECT_FALSE(rov::cheapest_step(std::nan(""), true).ok());
@@ -161,7 +164,8 @@ TEST(PhysicsTradeoff, AnErrorBecomesTheCheapestRateThatHoldsIt) {
   }
   const auto contacts = rov::measured_contacts();
   for (std::size_t i = 1; i < contacts.size(); ++i) {
-    EXPECT_LT(contacts[i].step_s, contacts[i - 1].step_s);
+    EXPECT_GT(contacts[i].within_m, 0.0);
+    if (i > 1) EXPECT_LT(contacts[i].within_m, contacts[i - 1].within_m);
     EXPECT_LT(contacts[i].error_m, contacts[i - 1].error_m);
   }
 }

@@ -14,8 +14,10 @@ using namespace testbed;
 namespace {
 
 constexpr double kTolerance = 1e-12;
-// Steps a hold of the truth among things: 31 us.
-constexpr int kFinest = 1600;
+// Steps a hold of the truth among things, 1 ms; where halving those that touch ends, for the truth
+// and for what says how sure it is, m.
+constexpr int kFinest = 50;
+constexpr double kFinest_m = 5e-7, kSecond_m = 1e-6;
 
 std::size_t holds_of(double seconds) {
   return static_cast<std::size_t>(std::llround(seconds / kHold_s));
@@ -92,9 +94,10 @@ Result<std::vector<rov::State>> extrapolated(const Flight& flight, double tolera
   return out;
 }
 
-std::vector<rov::State> stepped(const Flight& flight, int count) {
+std::vector<rov::State> halved(const Flight& flight, double within_m) {
   std::vector<rov::State> out;
-  flight.fly(count, {}, [&](std::size_t, const rov::State& state) { out.push_back(state); });
+  flight.fly(kFinest, {rov::Integrator::kGuarded, within_m},
+             [&](std::size_t, const rov::State& state) { out.push_back(state); });
   return out;
 }
 
@@ -297,8 +300,8 @@ Result<Flight> mission_flight(bool pulses, double seconds) {
 Flight contact_flight(bool lag, double seconds) {
   Flight flight = vehicle_among_things(lag ? "contact, lag" : "contact, no lag", lag);
   record_commands(flight, seconds, 400, among_things, Vec3(0.0));
-  flight.truth = stepped(flight, kFinest);
-  flight.truth_error_m = most_apart_m(flight.truth, stepped(flight, kFinest / 2));
+  flight.truth = halved(flight, kFinest_m);
+  flight.truth_error_m = most_apart_m(flight.truth, halved(flight, kSecond_m));
   return flight;
 }
 
@@ -306,8 +309,8 @@ Flight contact_mission_flight(double seconds) {
   Flight flight = vehicle_among_things("mission, contact", true);
   flight.inputs.assign(holds_of(seconds), {});
   flight.loop = loop_of(flight.vehicle, among_things);
-  flight.truth = stepped(flight, kFinest);
-  flight.truth_error_m = most_apart_m(flight.truth, stepped(flight, kFinest / 2));
+  flight.truth = halved(flight, kFinest_m);
+  flight.truth_error_m = most_apart_m(flight.truth, halved(flight, kSecond_m));
   return flight;
 }
 

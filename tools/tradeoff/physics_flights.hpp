@@ -68,8 +68,8 @@ Result<Flight> square_flight(bool lag, double seconds);
 // difference into one of a whole pulse.
 Result<Flight> mission_flight(bool pulses, double seconds);
 // The same vehicle set down on sand, from 3 s on driven along it, lifted, from 10 s on driven
-// against a wall, along that, and away; the truth is the recommended integrator at a step so short
-// that it errs least.
+// against a wall, along that, and away; the truth are steps of 1 ms, those that touch halved until
+// they err least.
 Flight contact_flight(bool lag, double seconds);
 // The same way by a controller in the loop.
 Flight contact_mission_flight(double seconds);

@@ -45,12 +45,12 @@ constexpr FlightWords kWords[] = {
      "At 1 m/s onto sand with friction 0.3, no drag: it rolls from 0.64 s on, at 5/7 of that."}};
 
 std::string physics_csv(const PhysicsTradeoff& t) {
-  std::string out = "flight,integrator,step_ms,contact_parts,error_m,error_rad,us_a_second,order\n";
-  for (const auto* points : {&t.points, &t.parts})
+  std::string out = "flight,integrator,step_ms,within_m,error_m,error_rad,us_a_second,order\n";
+  for (const auto* points : {&t.points, &t.halved})
     for (const PhysicsPoint& p : *points)
-      out += fmt::format("\"{}\",{},{:.6g},{},{:.4g},{:.4g},{:.4g},{:.2f}\n", p.flight,
-                         name_of(p.integrator), 1e3 * p.step_s, p.contact_parts, p.error_m,
-                         p.error_rad, p.us_a_second, p.order);
+      out += fmt::format("\"{}\",{},{:.6g},{:g},{:.4g},{:.4g},{:.4g},{:.2f}\n", p.flight,
+                         name_of(p.integrator), 1e3 * p.step_s, p.within_m, p.error_m, p.error_rad,
+                         p.us_a_second, p.order);
   return out;
 }
 
@@ -58,20 +58,22 @@ std::string number_text(double value) {
   return std::isfinite(value) ? fmt::format("{:.1e}", value) : "diverges";
 }
 
-std::string parts_md(const PhysicsTradeoff& t) {
-  std::string out = "\n## Steps of 240 Hz, those that touch in parts (guarded)\n\n| parts |",
-              rule = "\n|---|";
+std::string halved_md(const PhysicsTradeoff& t) {
+  std::string out =
+                  "\n## Steps that touch, halved until a half changes them by no more (guarded)\n\n"
+                  "| step, ms | within, m |",
+              rule = "\n|---|---|";
   for (std::size_t f = 0; f < std::size(kFlightNames); ++f)
-    if (std::ranges::count(t.parts, kFlightNames[f], &PhysicsPoint::flight) > 0) {
+    if (std::ranges::count(t.halved, kFlightNames[f], &PhysicsPoint::flight) > 0) {
       out += fmt::format(" {}, m | us |", kWords[f].title);
       rule += "---|---|";
     }
   out += rule + "\n";
-  for (const PhysicsPoint& row : t.parts) {
-    if (row.flight != t.parts.front().flight) continue;
-    out += fmt::format("| {} |", row.contact_parts);
-    for (const PhysicsPoint& p : t.parts)
-      if (p.contact_parts == row.contact_parts)
+  for (const PhysicsPoint& row : t.halved) {
+    if (row.flight != t.halved.front().flight) continue;
+    out += fmt::format("| {:.3g} | {:g} |", 1e3 * row.step_s, row.within_m);
+    for (const PhysicsPoint& p : t.halved)
+      if (p.within_m == row.within_m && p.step_s == row.step_s)
         out += fmt::format(" {} | {:.0f} |", number_text(p.error_m), p.us_a_second);
     out += "\n";
   }
@@ -82,7 +84,7 @@ std::string physics_md(const PhysicsTradeoff& t) {
   std::string out =
       "# Physics: error against cost\n\nThe largest distance from the truth, and microseconds of "
       "one core a second of flight. The truth is an adaptive extrapolation of order 16 in open "
-      "water, steps of 31 us among things.\n";
+      "water, halved steps among things.\n";
   for (std::size_t f = 0; f < std::size(kFlightNames); ++f) {
     const std::string flight = kFlightNames[f];
     out += fmt::format("\n## {}\n\n{} The truth is sure to {:.0e} m.\n\n| step, ms |",
@@ -99,7 +101,7 @@ std::string physics_md(const PhysicsTradeoff& t) {
       out += "\n";
     }
   }
-  out += parts_md(t);
+  out += halved_md(t);
   out +=
       "\n## Cheapest that holds an error in open water, with and without lag\n\n| m | integrator | "
       "step, ms | us |\n|---|---|---|---|\n";
@@ -113,7 +115,7 @@ std::string physics_md(const PhysicsTradeoff& t) {
 nlohmann::json point_json(const PhysicsPoint& p) {
   return {{"integrator", name_of(p.integrator)},
           {"step_ms", 1e3 * p.step_s},
-          {"contact_parts", p.contact_parts},
+          {"within_m", p.within_m},
           {"error_m", p.error_m},
           {"error_rad", p.error_rad},
           {"us_a_second", p.us_a_second}};
@@ -174,16 +176,19 @@ Panel steps_panel(const PhysicsTradeoff& t) {
   return panel;
 }
 
-// 240 Hz, with the steps that touch in parts.
-Panel parts_panel(const PhysicsTradeoff& t) {
-  Panel panel{"240 Hz, guarded, steps that touch in parts: over cost", {kCost}, {kError}};
+// 80 and 1000 Hz, with the steps that touch halved.
+Panel halved_panel(const PhysicsTradeoff& t) {
+  Panel panel{"80 and 1000 Hz, guarded, steps that touch halved: over cost", {kCost}, {kError}};
   for (std::size_t f = kFirstAmongThings; f < std::size(kFlightNames); ++f) {
     Series s{kWords[f].title, {}, {}};
-    for (const PhysicsPoint& p : t.parts) {
-      if (p.flight != kFlightNames[f] || !is_drawn(p)) continue;
-      s.x.push_back(p.us_a_second);
-      s.y.push_back(p.error_m);
-      s.notes.push_back(fmt::format("{} part{}", p.contact_parts, p.contact_parts == 1 ? "" : "s"));
+    std::vector<const PhysicsPoint*> points;
+    for (const PhysicsPoint& p : t.halved)
+      if (p.flight == kFlightNames[f] && is_drawn(p)) points.push_back(&p);
+    std::ranges::sort(points, {}, &PhysicsPoint::us_a_second);
+    for (const PhysicsPoint* p : points) {
+      s.x.push_back(p->us_a_second);
+      s.y.push_back(p->error_m);
+      s.notes.push_back(fmt::format("{:g}", p->within_m));
     }
     panel.series.push_back(std::move(s));
   }
@@ -194,11 +199,11 @@ Page physics_page(const PhysicsTradeoff& t) {
   Page page{"Vehicle physics: error against cost",
             {fmt::format("{:g} s of recorded commands, round a square in a current or set down on "
                          "sand and driven against a wall. Truth: extrapolation of order 16; among "
-                         "things steps of 31 µs. Default: guarded, {:g} Hz.",
+                         "things halved steps. Default: guarded, {:g} Hz.",
                          t.flight_s, scene::Physics{}.rate_hz)}};
   for (const std::size_t f : {0, 1, 4, 5}) page.panels.push_back(flight_panel(t, f));
   page.panels.push_back(steps_panel(t));
-  page.panels.push_back(parts_panel(t));
+  page.panels.push_back(halved_panel(t));
   return page;
 }
 

@@ -19,9 +19,9 @@ using rov::Integrator;
 constexpr int kCounts[] = {50, 25, 20, 12, 10, 5, 4, 2, 1};
 constexpr Integrator kIntegrators[] = {Integrator::kSemiImplicit, Integrator::kRk4,
                                        Integrator::kGuarded};
-// Parts into which a step of 240 Hz with contacts is divided.
-constexpr int kParts[] = {1, 2, 4, 8, 16, 32};
-constexpr int kPartsCount = 12;
+// Where halving a step with contacts ends, and the steps a hold: 80 and 1000 Hz.
+constexpr double kWithin_m[] = {1e-4, 1e-5, 1e-6};
+constexpr int kHalvedCounts[] = {4, 50};
 // Later the ball's bounces are too low to count as such, and what slides has stopped.
 constexpr double kClosedForms_s = 5.0;
 constexpr std::size_t kFlights = std::size(kFlightNames);
@@ -53,11 +53,11 @@ double least_cpu_us(const Flight& flight, const Way& way, int repeats) {
 
 PhysicsPoint measure(Flight& flight, const Way& way, bool quick) {
   const double step_s = kHold_s / way.count;
-  rov::prepare_steps(flight.vehicle, std::array{step_s, step_s / way.method.contact_parts});
+  rov::prepare_steps(flight.vehicle, std::array{step_s});
   PhysicsPoint point;
   point.flight = flight.name;
   point.integrator = way.method.integrator;
-  point.contact_parts = way.method.contact_parts;
+  point.within_m = way.method.contact_error_m;
   point.step_s = step_s;
   const FlownError error = flown_error(flight, step_s, way.method);
   point.error_m = error.m;
@@ -103,9 +103,10 @@ void measure_flight(Flight& flight, const PhysicsTradeoffOptions& options, Physi
       options.step();
     }
   if (!flight.solid) return;
-  for (const int parts : kParts)
-    out.parts.push_back(
-        measure(flight, {kPartsCount, {Integrator::kGuarded, parts}}, options.quick));
+  for (const int count : kHalvedCounts)
+    for (const double within_m : kWithin_m)
+      out.halved.push_back(
+          measure(flight, {count, {Integrator::kGuarded, within_m}}, options.quick));
 }
 
 }  // namespace

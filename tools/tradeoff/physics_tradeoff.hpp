@@ -31,7 +31,7 @@ struct PhysicsPoint {
   std::string flight;
   rov::Integrator integrator = rov::Integrator::kGuarded;
   double step_s = 0.0;
-  int contact_parts = 1;  // of a step in which something is touched
+  double within_m = 0.0;  // at which halving a step that touches ends; 0: it is not halved
   // The largest over the flight, at every change of the commands. Not finite: it diverged.
   double error_m = 0.0, error_rad = 0.0;
   double us_a_second = 0.0;  // of one core, a second of flight
@@ -42,9 +42,9 @@ struct PhysicsTradeoff {
   double flight_s = 0.0;
   std::map<std::string, double> truth_error_m;  // how sure each flight's truth is
   std::vector<PhysicsPoint> points;
-  // At 240 Hz by the recommended integrator, of all that touches: more and more parts of a step
-  // that does.
-  std::vector<PhysicsPoint> parts;
+  // By the recommended integrator, of all that touches, at the two rates that max_error_m chooses:
+  // steps that touch halved more and more.
+  std::vector<PhysicsPoint> halved;
 };
 // The farthest from the truth, by one way to step. Not finite: it diverged.
 struct Flight;

@@ -165,21 +165,24 @@ TEST(PhysicsWorld, AnErrorChoosesTheStep) {
   };
   EXPECT_NEAR((*world_of("1e-3"))->step_s(), 1.0 / 80.0, 1e-12);
   EXPECT_NEAR((*world_of("2e-8"))->step_s(), 1.0 / 1000.0, 1e-12);
-  EXPECT_EQ((*world_of("2e-8"))->method().contact_parts, 1);
+  EXPECT_EQ((*world_of("2e-8"))->method().contact_error_m, 0.0);
   const auto refused = world_of("1e-15");
   ASSERT_FALSE(refused.ok());
   EXPECT_NE(refused.error().message.find("dive.toml: physics.max_error_m: found 1e-15"),
             std::string::npos)
       << refused.error().message;
-  // Where something can be touched, the steps that touch it are taken in parts.
+  // Where something can be touched, the steps that touch it are halved.
   const char* wall = "[[objects]]\nclass = 'structure'\nshape = 'box'\nposition_m = [0, -5, -9]\n";
   const auto among = world_of("1e-3", wall);
   ASSERT_TRUE(among.ok());
   EXPECT_NEAR((*among)->step_s(), 1.0 / 80.0, 1e-12);
-  EXPECT_EQ((*among)->method().contact_parts, 32);
+  EXPECT_EQ((*among)->method().contact_error_m, 1e-4);
+  const auto better = world_of("1e-5", wall);
+  ASSERT_TRUE(better.ok());
+  EXPECT_LT((*better)->method().contact_error_m, 1e-5);
   const auto too_good = world_of("1e-6", wall);
   ASSERT_FALSE(too_good.ok());
-  EXPECT_NE(too_good.error().message.find("accepted: a number from 0.00044 where something solid"),
+  EXPECT_NE(too_good.error().message.find("accepted: a number from 1e-05 where something solid"),
             std::string::npos)
       << too_good.error().message;
 }
