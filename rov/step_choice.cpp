@@ -12,7 +12,7 @@ namespace {
 // The last is 1.5e-9 m off what `tradeoff physics` takes for true, which itself is sure to 9e-9 m.
 constexpr MeasuredRate kRates[] = {{80.0, 7e-4, 87.0}, {1000.0, 1.0e-8, 664.0}};
 
-constexpr MeasuredContact kContacts[] = {{0.0, 3.3e-2}, {1e-4, 2e-4}, {1e-5, 5e-5}, {1e-6, 1e-5}};
+constexpr MeasuredContact kContacts[] = {{0.0, 3.3e-2}, {1e-4, 1.2e-4}, {1e-5, 4e-5}};
 
 }  // namespace
 

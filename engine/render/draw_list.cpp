@@ -69,7 +69,6 @@ class DrawListBuilder {
         views_(views),
         options_(options),
         origin_(views.origin_m()),
-        larger_of_(options.least_drawn ? scene.objects.size() : 0),
         culling_(views),
         spheres_(views) {
     for (const ViewDesc& view : views.views) {
@@ -87,7 +86,10 @@ class DrawListBuilder {
     out_.all_triangles = gpu_scene_.triangles();
     if (options_.least_drawn) {
       out_.larger = drawn_larger(scene_, gpu_scene_, state_, origin_, *options_.least_drawn);
-      for (const DrawnLarger& larger : out_.larger) larger_of_[larger.object] = &larger;
+      for (const DrawnLarger& larger : out_.larger) {  // by ascending labels
+        larger_of_.resize(larger.label + std::size_t{1}, nullptr);
+        larger_of_.back() = &larger;
+      }
     }
     for (std::uint32_t g = 0; g < gpu_scene_.groups().size(); ++g) add_group(g);
     std::stable_sort(out_.opaque.begin(), out_.opaque.end(),
@@ -155,7 +157,7 @@ class DrawListBuilder {
       const double center_m = glm::length(center), stretch = largest_stretch(m);
       const double error_m = kFloatError * (glm::length(Vec3(m[3])) +
                                             stretch * (glm::length(own_center_m) + own_radius_m));
-      const DrawnLarger* larger = larger_of_.empty() ? nullptr : larger_of_[a.object];
+      const DrawnLarger* larger = a.label < larger_of_.size() ? larger_of_[a.label] : nullptr;
       if (bounded && !larger && !spheres_.may_see(center, own_radius_m * stretch + error_m))
         continue;
       const double order_m = blend ? center_m : nearness(center_m, own_radius_m * stretch);
@@ -296,7 +298,7 @@ class DrawListBuilder {
   const ViewSet& views_;
   const DrawListOptions options_;
   const Vec3 origin_;
-  std::vector<const DrawnLarger*> larger_of_;  // an object; empty: none is
+  std::vector<const DrawnLarger*> larger_of_;  // a label; those beyond are not
   const ClusterCulling culling_;
   const SphereCulling spheres_;
   struct Eye {

@@ -12,10 +12,9 @@ namespace {
 // Beyond this nothing grows: a sheet seen edge-on has no width to begin with.
 constexpr double kMostStretch = 1e3;
 
-// An object's corners and spheres from the eye, in the eye's axes.
+// Corners and spheres of an object or a copy from the eye, in the eye's axes.
 struct Extent {
-  bool draws = false, fits = true;  // only rigid, opaque triangles do
-  std::uint16_t label = 0;
+  bool draws = false, fits = true;           // only opaque triangles do
   std::vector<std::array<Vec3, 8>> corners;  // a primitive
   std::vector<std::pair<Vec3, double>> spheres;
 };
@@ -44,33 +43,42 @@ Span along(const Extent& extent, const Vec3& direction) {
   return span;
 }
 
+// By label.
 std::vector<Extent> extents(const scene::Scene& scene, const GpuScene& gpu_scene,
                             const FrameState& state, const Vec3& eye_m,
                             const Quat& world_from_eye) {
-  std::vector<Extent> out(scene.objects.size());
+  std::vector<Extent> out;
   const Quat eye_from_world = glm::conjugate(world_from_eye);
-  for (const DrawGroup& group : gpu_scene.groups()) {
+  for (std::size_t g = 0; g < gpu_scene.groups().size(); ++g) {
+    const DrawGroup& group = gpu_scene.groups()[g];
     const GpuPrimitive& primitive = group.primitive;
     if (primitive.index_count == 0) continue;
     const GpuMaterial& material = gpu_scene.materials()[primitive.material];
-    const bool fits = !primitive.deforms() && !material.mask && !material.blend &&
-                      primitive.topology == scene::Topology::kTriangles;
+    const bool fits =
+        !material.mask && !material.blend && primitive.topology == scene::Topology::kTriangles;
     for (const Appearance& a : group.appearances) {
-      Extent& extent = out[a.object];
-      if (a.copy >= 0 || a.node_instance >= 0 || !fits) extent.fits = false;
+      if (scene.objects[a.object].copies.size() > kMostDrawnLarger) continue;
+      if (out.size() <= a.label) out.resize(a.label + std::size_t{1});
+      Extent& extent = out[a.label];
+      const DeformJob* job =
+          primitive.deforms() ? state.job_of(static_cast<std::uint32_t>(g), a.object, a.node, false)
+                              : nullptr;
+      if (!fits || (job && job->radius_m < 0.0)) extent.fits = false;
       if (!extent.fits) continue;
       extent.draws = true;
-      extent.label = a.label;
-      Mat4 m = world_from_appearance(scene, state.world_from_object[a.object],
-                                     state.poses[a.object], a, false, state.flock[a.object]);
+      Mat4 m =
+          world_from_appearance(scene, state.world_from_object[a.object], state.poses[a.object], a,
+                                primitive.first_skin != kNone && job, state.flock[a.object]);
       m[3] -= Vec4(eye_m, 0.0);
+      const Vec3 own_center_m = job ? job->center_m : primitive.center_m;
+      const double own_radius_m = job ? job->radius_m : primitive.radius_m;
+      const Vec3 half_m = job ? Vec3(own_radius_m) : primitive.half_m;
       std::array<Vec3, 8> corners;
       double radius = 0.0;
-      const Vec3 center = eye_from_world * Vec3(m * Vec4(primitive.center_m, 1.0));
+      const Vec3 center = eye_from_world * Vec3(m * Vec4(own_center_m, 1.0));
       for (int i = 0; i < 8; ++i) {
         const Vec3 sign(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
-        corners[i] =
-            eye_from_world * Vec3(m * Vec4(primitive.center_m + sign * primitive.half_m, 1.0));
+        corners[i] = eye_from_world * Vec3(m * Vec4(own_center_m + sign * half_m, 1.0));
       }
       for (int k = 0; k < 3; ++k) radius = std::max(radius, glm::length(Vec3(m[k])));
       // A map that shears may lengthen by more than its columns do.
@@ -78,7 +86,7 @@ std::vector<Extent> extents(const scene::Scene& scene, const GpuScene& gpu_scene
           glm::length(Vec3(m[0])) * glm::length(Vec3(m[1])) * glm::length(Vec3(m[2]));
       const bool turns = std::abs(glm::determinant(glm::dmat3(m))) > 0.999 * sheared;
       extent.corners.push_back(corners);
-      extent.spheres.push_back({center, turns ? primitive.radius_m * radius : 1e300});
+      extent.spheres.push_back({center, turns ? own_radius_m * radius : 1e300});
     }
   }
   return out;
@@ -196,8 +204,7 @@ std::vector<DrawnLarger> drawn_larger(const scene::Scene& scene, const GpuScene&
     if (!found[i].draws || !found[i].fits) continue;
     auto g = growing(found[i], least, grows_up);
     if (!g) continue;
-    g->larger.object = static_cast<std::uint32_t>(i);
-    g->larger.label = found[i].label;
+    g->larger.label = static_cast<std::uint16_t>(i);
     all.push_back(*g);
   }
   std::vector<DrawnPlace> places;

@@ -20,9 +20,8 @@ struct LeastDrawn {
   double elevation_min_rad = 0.0, elevation_max_rad = 0.0;
 };
 
-// One object that is drawn larger.
+// One object, or one of its copies, that is drawn larger.
 struct DrawnLarger {
-  std::uint32_t object = 0;
   std::uint16_t label = 0;                           // of its instance
   double area = 1.0;                                 // of what is drawn over the thing's own
   Mat4 drawn_from_true{1.0};                         // of positions from the eye, in world axes
@@ -31,12 +30,13 @@ struct DrawnLarger {
   double drawn_low_rad = 0.0, drawn_high_rad = 0.0;  // and of what is drawn
 };
 
-// The most objects that are drawn larger in a view set, the smallest indices first.
+// The most things that are drawn larger in a view set, the smallest labels first. Objects with more
+// copies keep their size: so many echo together, and each, larger, would hide others.
 inline constexpr std::size_t kMostDrawnLarger = 512;
 
-// Rigid, opaque objects without copies, smaller than the least. Each grows upwards from its lower
-// end, since that may stand on the bottom, and no farther than its neighbours begin: what hides
-// part of another keeps its size. eye_m: in the world.
+// Opaque objects and copies smaller than the least; what bends by the ball round it. Each grows
+// upwards from its lower end, since that may stand on the bottom, and no farther than its
+// neighbours begin: what hides part of another keeps its size. eye_m: in the world.
 std::vector<DrawnLarger> drawn_larger(const scene::Scene& scene, const GpuScene& gpu_scene,
                                       const FrameState& state, const Vec3& eye_m,
                                       const LeastDrawn& least);

@@ -70,12 +70,17 @@ render::LeastDrawn least_drawn(const sonar::Head& head, const scene::Sonar& sona
 double least_object_m(const scene::Scene& scene) {
   double least_m = 0.0;
   for (const scene::Object& object : scene.objects) {
-    if (object.model < 0 || !object.copies.empty()) continue;
+    if (object.model < 0 || object.copies.size() > render::kMostDrawnLarger) continue;
     const scene::Model& model = *scene.models[object.model];
     const scene::Bounds bounds = model_bounds(model, evaluate_pose(model, -1, 0.0));
     if (bounds.empty()) continue;
     const Vec3 size_m = glm::abs((bounds.max - bounds.min) * object.scale);
-    const double most_m = std::max({size_m.x, size_m.y, size_m.z});
+    double most_m = std::max({size_m.x, size_m.y, size_m.z});
+    if (!object.copies.empty()) {  // theirs hold the scale
+      double least = 1e300;
+      for (const Mat4& copy : object.copies) least = std::min(least, render::largest_stretch(copy));
+      most_m *= least;
+    }
     if (most_m > 0.0 && (least_m == 0.0 || most_m < least_m)) least_m = most_m;
   }
   return least_m;

@@ -17,7 +17,7 @@ namespace neritic::testbed {
 render::LeastDrawn least_drawn(const sonar::Head& head, const scene::Sonar& sonar,
                                double pixels_per_cell);
 
-// The least of the largest extents of objects without copies, m; 0: there is no such object.
+// The least of the largest extents of objects and copies, m; 0: there is no such object.
 double least_object_m(const scene::Scene& scene);
 
 // Strengths by instance label (empty: all are 1) with those of what is drawn larger: negative, less

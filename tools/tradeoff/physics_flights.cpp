@@ -17,7 +17,7 @@ constexpr double kTolerance = 1e-12;
 // Steps a hold of the truth among things, 1 ms; where halving those that touch ends, for the truth
 // and for what says how sure it is, m.
 constexpr int kFinest = 50;
-constexpr double kFinest_m = 5e-7, kSecond_m = 1e-6;
+constexpr double kFinest_m = 3e-6, kSecond_m = 1e-5;
 
 std::size_t holds_of(double seconds) {
   return static_cast<std::size_t>(std::llround(seconds / kHold_s));

@@ -20,7 +20,7 @@ constexpr int kCounts[] = {50, 25, 20, 12, 10, 5, 4, 2, 1};
 constexpr Integrator kIntegrators[] = {Integrator::kSemiImplicit, Integrator::kRk4,
                                        Integrator::kGuarded};
 // Where halving a step with contacts ends, and the steps a hold: 80 and 1000 Hz.
-constexpr double kWithin_m[] = {1e-4, 1e-5, 1e-6};
+constexpr double kWithin_m[] = {1e-4, 3e-5, 1e-5};
 constexpr int kHalvedCounts[] = {4, 50};
 // Later the ball's bounces are too low to count as such, and what slides has stopped.
 constexpr double kClosedForms_s = 5.0;

@@ -101,6 +101,39 @@ std::vector<double> over_closed_form(const SonarFrame& frame, const scene::Sonar
   return out;
 }
 
+// The same balls as copies of one object.
+scene::Scene as_copies(scene::Scene scene) {
+  scene::Object one = scene.objects.front();
+  for (const scene::Object& object : scene.objects)
+    one.copies.push_back(glm::translate(Mat4(1.0), object.mount.pose.position_m));
+  one.mount.pose = {};
+  scene.objects = {one};
+  return scene;
+}
+
+// The same balls with skins: the joint of each has moved its vertices from far away.
+scene::Scene as_skinned(scene::Scene scene) {
+  for (const auto& shared : scene.models) {
+    scene::Model& model = const_cast<scene::Model&>(*shared);
+    const Vec3 far_m(0.0, 3.0, 0.0);
+    const int joint = static_cast<int>(model.nodes.size());
+    model.nodes.push_back({});
+    model.roots.push_back(joint);
+    scene::Skin skin;
+    skin.joints = {joint};
+    skin.inverse_bind = {glm::translate(Mat4(1.0), -far_m)};
+    model.skins.push_back(skin);
+    model.nodes.front().skin = 0;
+    for (scene::Mesh& mesh : model.meshes)
+      for (scene::Primitive& primitive : mesh.primitives) {
+        for (auto& position : primitive.positions) position += Vec3f(far_m);
+        primitive.joints.assign(primitive.positions.size(), {0, 0, 0, 0});
+        primitive.weights.assign(primitive.positions.size(), Vec4f(1.0f, 0.0f, 0.0f, 0.0f));
+      }
+  }
+  return scene;
+}
+
 class SmallTargets : public test::GpuTest, public testing::WithParamInterface<const char*> {};
 
 TEST_P(SmallTargets, ABallOfOneCentimetreIsHeardAtItsLevelInEveryPlace) {
@@ -129,6 +162,30 @@ INSTANTIATE_TEST_SUITE_P(Devices, SmallTargets,
                          testing::Values("oculus_m1200d", "oculus_m750d", "gemini_720is",
                                          "blueview_p900_45"),
                          [](const auto& info) { return std::string(info.param); });
+
+using SmallTargetsOfAKind = test::GpuTest;
+
+TEST_F(SmallTargetsOfAKind, CopiesAndSkinnedBallsAreAsLoudAsSingleOnes) {
+  const scene::Sonar sonar = device_of("blueview_p900_45");
+  const std::vector<Ball> places = balls(sonar, 1);
+  const scene::Scene single = scene_of(sonar, places);
+  const auto plain = over_closed_form(ping(device(), single), sonar, places);
+  const auto copies = over_closed_form(ping(device(), as_copies(single)), sonar, places);
+  const auto skinned = over_closed_form(ping(device(), as_skinned(single)), sonar, places);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    EXPECT_NEAR(10.0 * std::log10(copies[i] / plain[i]), 0.0, 0.05) << i;
+    EXPECT_NEAR(10.0 * std::log10(skinned[i]), 0.0, 1.2) << i;
+  }
+}
+
+// A copy that no object stands for is met too, and a crowd of many keeps its size.
+TEST_F(SmallTargetsOfAKind, ACrowdKeepsItsSize) {
+  const scene::Sonar sonar = device_of("blueview_p900_45");
+  scene::Scene crowd = as_copies(scene_of(sonar, balls(sonar, 1)));
+  EXPECT_DOUBLE_EQ(least_object_m(crowd), 2.0 * kRadius_m);
+  crowd.objects[0].copies.resize(render::kMostDrawnLarger + 1, Mat4(1.0));
+  EXPECT_EQ(least_object_m(crowd), 0.0);
+}
 
 using SmallTargetsOnABottom = test::GpuTest;
 
