@@ -39,6 +39,14 @@ TEST_F(DivePhysics, FliesWithoutADeviceAndSaysWhatCameOfIt) {
   EXPECT_NE(outcome.out.find("hash " + columns.at("hash").back()), std::string::npos);
 }
 
+TEST_F(DivePhysics, ATimeShorterThanAStepIsOneStep) {
+  const Outcome outcome = dive("--headless --seconds 5e-324 --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = parse_json(outcome.out);
+  ASSERT_TRUE(json.ok());
+  EXPECT_EQ((*json)["steps"], 1);
+}
+
 TEST_F(DivePhysics, KeepsTheClocksPaceWhenToldTo) {
   const Outcome outcome = dive("--headless --seconds 1 --realtime --json");
   ASSERT_EQ(outcome.status, 0) << outcome.err;

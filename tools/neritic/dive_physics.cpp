@@ -101,7 +101,7 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,
        .physics = physics.get(),
        .sources = sources,
        .step_sinks = sinks,
-       .stop = {.frames = static_cast<std::uint64_t>(std::ceil(seconds / step_s - 1e-9)),
+       .stop = {.frames = steps_in(seconds, step_s),
                 .interrupted = [&] { return interrupt.requested(); }}});
   const Status status = loop.run();
   // A run that failed prints its summary too.

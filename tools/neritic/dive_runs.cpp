@@ -40,14 +40,12 @@ SeededRun run_with(scene::Scene scene, std::uint64_t seed, double seconds,
   const PhysicsWorld& world = physics->world();
   DiveLog log(world, 0.0, {});
   SeededRun run;
-  Loop loop(
-      {.clock = Clock::simulated(0.0, world.step_s()),
-       .physics = physics.get(),
-       .step_sinks = {&log},
-       .stop = {.frames = static_cast<std::uint64_t>(std::ceil(seconds / world.step_s() - 1e-9)),
-                .interrupted = [&] {
-                  return interrupt.requested() || all_done(world, physics->newest().state);
-                }}});
+  Loop loop({.clock = Clock::simulated(0.0, world.step_s()),
+             .physics = physics.get(),
+             .step_sinks = {&log},
+             .stop = {.frames = steps_in(seconds, world.step_s()), .interrupted = [&] {
+                        return interrupt.requested() || all_done(world, physics->newest().state);
+                      }}});
   run.status = loop.run();
   const PhysicsState& end = physics->newest().state;
   run.outcomes = outcomes_of(world, end, log, seed);
