@@ -103,10 +103,12 @@ void measure_flight(Flight& flight, const PhysicsTradeoffOptions& options, Physi
       options.step();
     }
   if (!flight.solid) return;
-  for (const int count : kHalvedCounts)
+  for (const int count : kHalvedCounts) {
+    if (options.quick && count != kHalvedCounts[0]) break;
     for (const double within_m : kWithin_m)
       out.halved.push_back(
           measure(flight, {count, {Integrator::kGuarded, within_m}}, options.quick));
+  }
 }
 
 }  // namespace
