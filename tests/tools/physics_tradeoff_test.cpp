@@ -169,7 +169,9 @@ TEST(PhysicsTradeoff, AnErrorBecomesTheCheapestRateThatHoldsIt) {
   const auto contacts = rov::measured_contacts();
   for (std::size_t i = 1; i < contacts.size(); ++i) {
     EXPECT_GT(contacts[i].within_m, 0.0);
-    if (i > 1) EXPECT_LT(contacts[i].within_m, contacts[i - 1].within_m);
+    if (i > 1) {
+      EXPECT_LT(contacts[i].within_m, contacts[i - 1].within_m);
+    }
     EXPECT_LT(contacts[i].error_m, contacts[i - 1].error_m);
   }
 }
