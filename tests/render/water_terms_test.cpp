@@ -190,8 +190,7 @@ TEST(Snow, AViewGetsTheGrainsInItsSight) {
   const scene::MotionSource motion(scene);
   ViewDesc view;
   view.world_from_view = {Vec3(3.0, -9.0, 1.0), from_yaw_pitch_roll(0.3, -0.2, 0.1)};
-  view.width = view.height = 600;
-  const ViewSet views{.views = {view}};
+  const ViewSet views{.width = 600, .height = 600, .views = {view}};
   SnowField field;
   const ViewParticles seen = view_particles(motion, field, 7, views, 2.0);
   const Vec3 origin = views.origin_m();
