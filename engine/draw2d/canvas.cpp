@@ -1,6 +1,7 @@
 #include "engine/draw2d/canvas.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/core/check.hpp"
@@ -12,6 +13,12 @@ namespace {
 
 std::uint8_t to_byte(float v) {
   return static_cast<std::uint8_t>(std::clamp(v, 0.0f, 1.0f) * 255.0f + 0.5f);
+}
+
+// A channel's byte under a share of a colour; the fourth is the coverage.
+std::uint8_t blended(float below, const Color& color, float share, std::size_t channel) {
+  const float over[4] = {color.r, color.g, color.b, 1.0f};
+  return to_byte(below / 255.0f * (1.0f - share) + over[channel] * share);
 }
 
 // The part of a pixel that a stroke covers, by the distance of its middle line from the pixel's
@@ -62,16 +69,31 @@ void Canvas::blend(int x, int y, const Color& color, float coverage) {
   if (x < 0 || y < 0 || x >= static_cast<int>(width()) || y >= static_cast<int>(height())) return;
   const float a = std::clamp(color.alpha * coverage, 0.0f, 1.0f);
   std::uint8_t* p = &image_.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
-  const float over[4] = {color.r, color.g, color.b, 1.0f};
-  for (std::uint32_t i = 0; i < image_.channels; ++i)
-    p[i] = to_byte(p[i] / 255.0f * (1.0f - a) + over[i] * a);
+  for (std::uint32_t i = 0; i < image_.channels; ++i) p[i] = blended(p[i], color, a, i);
 }
 
 void Canvas::paint(const Mask& mask, const Color& color) {
+  // What a byte becomes where a large area is covered whole: looked up, since most of it is.
+  constexpr std::size_t kLarge = 4096;
+  std::array<std::array<std::uint8_t, 256>, 4> whole;
+  const bool large = mask.coverage.size() >= kLarge;
+  const float a = std::clamp(color.alpha, 0.0f, 1.0f);
+  for (std::size_t v = 0; large && v < 256; ++v)
+    for (std::size_t c = 0; c < 4; ++c) whole[c][v] = blended(static_cast<float>(v), color, a, c);
+  const std::uint32_t channels = image_.channels;
   std::size_t i = 0;
   for (int y = mask.box.top; y < mask.box.bottom; ++y)
-    for (int x = mask.box.left; x < mask.box.right; ++x, ++i)
-      if (mask.coverage[i] > 0) blend(x, y, color, static_cast<float>(mask.coverage[i]) / 255.0f);
+    for (int x = mask.box.left; x < mask.box.right; ++x, ++i) {
+      if (mask.coverage[i] == 0) continue;
+      if (!large || mask.coverage[i] < 255) {
+        blend(x, y, color, static_cast<float>(mask.coverage[i]) / 255.0f);
+        continue;
+      }
+      if (x < 0 || y < 0 || x >= static_cast<int>(width()) || y >= static_cast<int>(height()))
+        continue;
+      std::uint8_t* p = &image_.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+      for (std::uint32_t c = 0; c < channels; ++c) p[c] = whole[c][p[c]];
+    }
 }
 
 void Canvas::fill_rectangle(double x0, double y0, double x1, double y1, const Color& color) {

@@ -73,7 +73,7 @@ ViewParticles view_particles(const scene::MotionSource& motion, SnowField& field
   }
   std::vector<WorldParticle> others;
   for (std::size_t i = 0; i < water.bubbles.size(); ++i)
-    add_bubbles(motion, water.bubbles[i], i, seed, time_s, others);
+    add_bubbles(motion, water.bubbles[i], i, seed, time_s, others, &views);
   for (std::size_t i = 0; i < water.silt.size(); ++i)
     add_silt(motion, water.silt[i], i, seed, time_s, others);
   const SphereCulling culling(views);

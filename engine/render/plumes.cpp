@@ -1,6 +1,7 @@
 // Bubbles and silt: each particle's place follows in closed form from when and where it was set
 // free.
 #include <algorithm>
+#include <optional>
 
 #include "engine/core/random.hpp"
 #include "engine/render/particles.hpp"
@@ -33,15 +34,19 @@ double eased(double low, double high, double x) {
   return t * t * (3.0 - 2.0 * t);
 }
 
+// A turbulent plume widens by about a tenth of its height: its radius.
+double plume_m(double rise_m) {
+  return 0.02 + 0.09 * rise_m;
+}
+
 // Where a bubble is that left a place age_s ago.
 WorldParticle risen(const scene::BubbleSource& source, const Vec3& from_m, double radius_m,
                     double age_s, const RandomKey& key, std::uint64_t index) {
   WorldParticle bubble;
   const double speed = bubble_speed_m_s(radius_m) + kPlumeRise_m_s;
   const double rise_m = speed * age_s;
-  // A turbulent plume widens by about a tenth of its height.
   const double turn = 2.0 * kPi * random_uniform(key, index);
-  const double off = std::sqrt(random_uniform(key, index + 1)) * (0.02 + 0.09 * rise_m);
+  const double off = std::sqrt(random_uniform(key, index + 1)) * plume_m(rise_m);
   // Ellipsoidal bubbles swing by about their own width, some five times a second.
   const double swing = 2.0 * kPi * (5.0 * age_s + random_uniform(key, index + 2));
   const double side = 1.5 * radius_m * std::sin(swing);
@@ -73,7 +78,9 @@ double bubble_speed_m_s(double radius_m) {
 
 void add_bubbles(const scene::MotionSource& motion, const scene::BubbleSource& source,
                  std::uint64_t number, std::uint64_t seed, double time_s,
-                 std::vector<WorldParticle>& out) {
+                 std::vector<WorldParticle>& out, const ViewSet* views) {
+  std::optional<SphereCulling> culling;
+  if (views) culling.emplace(*views);
   const bool leaks = source.breath_s <= 0.0;
   const double period_s = leaks ? 1.0 : source.breath_s;
   const double out_s = leaks ? period_s : kOutShare * period_s;
@@ -110,10 +117,15 @@ void add_bubbles(const scene::MotionSource& motion, const scene::BubbleSource& s
       const double age_s = time_s - born_s;
       if (age_s <= 0.0) continue;
       const double own_m = radius_m * std::exp(kBubbleSpread * normal_number(key, index + 1));
-      if ((bubble_speed_m_s(own_m) + kPlumeRise_m_s) * age_s > source.height_m) continue;
+      const double rise_m = (bubble_speed_m_s(own_m) + kPlumeRise_m_s) * age_s;
+      if (rise_m > source.height_m) continue;
       const Vec3 from_m =
           motion.world_from_object(static_cast<std::size_t>(source.object), born_s) *
           source.position_m;
+      // About where it is, with room for the plume's width, its swing and its growth.
+      if (culling && !culling->may_see(from_m + Vec3(0.0, rise_m, 0.0) - views->origin_m(),
+                                       plume_m(rise_m) + 10.0 * own_m + kSpotRoom_m))
+        continue;
       const WorldParticle bubble = risen(source, from_m, own_m, age_s, key, index + 4);
       if (bubble.position_m.y < -bubble.radius_m) out.push_back(bubble);
     }

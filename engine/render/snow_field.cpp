@@ -141,6 +141,8 @@ void SnowField::place(const scene::Snow& snow, std::uint64_t seed, const ViewSet
   begin(snow, seed);
   const SphereCulling culling(views);
   const Vec3f moved(snow.drift_m_s * snow.shutter_s);
+  out.reserve(out.size() + placed_ + placed_ / 8);
+  const std::size_t before = out.size();
   bool whole = false;  // the cell is in sight
   const auto wanted = [&](const Vec3& middle_m, double radius_m) {
     if (!culling.may_see(middle_m, radius_m)) return false;

@@ -58,6 +58,7 @@ class SnowField {
   std::unordered_map<Place, Cell, HashOf> cells_;
   double density_m3_ = -1.0, diameter_m_ = 0.0, spread_ = 0.0;
   std::uint64_t seed_ = 0, calls_ = 0;
+  std::size_t placed_ = 0;  // by the call before
 };
 
 }  // namespace neritic::render

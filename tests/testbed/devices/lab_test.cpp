@@ -8,13 +8,22 @@
 namespace neritic::testbed {
 namespace {
 
-constexpr const char* kSources =
-    "suit = \"mxtp udp 39763\"\nstrap = \"strap udp 39764\"\njacket = \"jacket udp 39765\"\n"
-    "microphone = \"microphone udp 39766\"\n";
+// Tests run beside each other: each takes ports that nobody has.
+std::string sources() {
+  std::vector<net::UdpReceiver> taken;  // until all are found, so that they differ
+  const auto port = [&] {
+    taken.push_back(net::UdpReceiver::bind({.transport = Transport::kUdp, .port = 0}).value());
+    return taken.back().port();
+  };
+  return fmt::format(
+      "suit = \"mxtp udp {}\"\nstrap = \"strap udp {}\"\njacket = \"jacket udp {}\"\n"
+      "microphone = \"microphone udp {}\"\n",
+      port(), port(), port(), port());
+}
 
 struct Lab {
-  explicit Lab(const net::LinkFaults& faults, const std::string& sources = kSources)
-      : dive(dive_of(lab_text(sources))) {
+  explicit Lab(const net::LinkFaults& faults, const std::string& text = sources())
+      : dive(dive_of(lab_text(text))) {
     auto opened = Devices::open(dive.scene, *dive.world, dive.simulation->inbox(),
                                 DeviceSource::Pace::kPolled);
     EXPECT_TRUE(opened.ok()) << opened.error().message;

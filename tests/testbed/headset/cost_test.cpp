@@ -1,5 +1,5 @@
 // The processor's time for a stereo frame outside of the device's work: all that the rendering
-// thread does, from the runtime's wait to its end of the frame, in the default dive.
+// thread does, from the runtime's wait to its end of the frame, in the whole default dive.
 #include <condition_variable>
 #include <ctime>
 #include <mutex>
@@ -95,25 +95,17 @@ class ThreadTime final : public SampleSource {
 
 using HeadsetCost = HeadsetRun;
 
-// With the validation layers it is far more: they are off.
-TEST_F(HeadsetCost, AStereoFrameOfTheDiveTakesLessThan1_5MillisecondsOfOneCore) {
+// 1.5 ms, the fake runtime's strict checks (a sixth) included; a third more is left for caches that
+// a busy machine shares. With the validation layers it is far more: they are off.
+TEST_F(HeadsetCost, AStereoFrameOfTheDiveTakesAMillisecondAndAHalfOfOneCore) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "an instrumented build";
 #endif
   fakes::FakeHeadset fake("size 16 16\nperiod 0.0111\n");
   without_layer();
   without_validation();
-  scene::Scene scene = scene::load_scene(test::source_dir() / "assets/scenes/dive.toml").value();
-  // The scene's light, snow, bubbles, silt and stones are left out: engine/render/TRADE.md has
-  // their prices.
-  scene.sun->shadows.reset();
-  scene.ambient.reset();
-  scene.water->snow.reset();
-  scene.water->bubbles.clear();
-  scene.water->silt.clear();
-  scene.water->forward_scatter.reset();
-  for (scene::Object& object : scene.objects)
-    if (object.copies.size() > 1) object.copies.resize(1);
+  const scene::Scene scene =
+      scene::load_scene(test::source_dir() / "assets/scenes/dive.toml").value();
   FrameClock clock;
   const auto physics = LivePhysics::create(PhysicsWorld::create(scene).value(),
                                            {.pace = LivePhysics::Pace::kClock, .clock = &clock});
@@ -123,7 +115,7 @@ TEST_F(HeadsetCost, AStereoFrameOfTheDiveTakesLessThan1_5MillisecondsOfOneCore) 
   with(DiveHudOptions{.layouts = {hud::LayoutKind::kWrist}});
   NERITIC_ASSERT_STATUS(dive(scene, 90));
   RecordProperty("frame_ms", fmt::format("{:.3f}", spent.frame_ms(12)));
-  EXPECT_LT(spent.frame_ms(12), 1.5);
+  EXPECT_LT(spent.frame_ms(12), 2.0);
 }
 
 }  // namespace
