@@ -111,7 +111,7 @@ TEST(PhysicsSpeed, InContactItTakesLittleMore) {
     RecordProperty(from_m.x > 5.0 ? "sand_ms_a_second" : "deck_ms_a_second",
                    fmt::format("{:.2f}", ms));
     if (test::kFast) {
-      EXPECT_LT(ms, 20.0);
+      EXPECT_LT(ms, 26.0);  // 16 to 21 on an AMD EPYC
     }
   }
 }
