@@ -161,6 +161,7 @@ void SnowField::place(const scene::Snow& snow, std::uint64_t seed, const ViewSet
                          static_cast<float>(opacity), shared::kParticleSnow, grain.look});
           ++runs.back().count;
         });
+  placed_ = out.size() - before;
 }
 
 void SnowField::append(const scene::Snow& snow, std::uint64_t seed, const Vec3& center_m,

@@ -98,7 +98,7 @@ Result<DracoMesh> DracoMesh::decode(std::span<const std::byte> bytes, std::size_
   auto decoded = std::make_unique<Decoded>();
   decoded->mesh = std::move(mesh).value();
   for (std::uint32_t i = 0; i < decoded->mesh->num_faces(); ++i)
-    for (const draco::PointIndex point : decoded->mesh->face(draco::FaceIndex(i)))
+    for (const auto& point : decoded->mesh->face(draco::FaceIndex(i)))
       if (point.value() >= decoded->mesh->num_points())
         return refusal("", fmt::format("point {} in a Draco stream", point.value()),
                        fmt::format("points below {}", decoded->mesh->num_points()));
@@ -113,7 +113,7 @@ std::vector<std::uint32_t> DracoMesh::indices() const {
   std::vector<std::uint32_t> out;
   out.reserve(std::size_t{decoded_->mesh->num_faces()} * 3);
   for (std::uint32_t i = 0; i < decoded_->mesh->num_faces(); ++i)
-    for (const draco::PointIndex point : decoded_->mesh->face(draco::FaceIndex(i)))
+    for (const auto& point : decoded_->mesh->face(draco::FaceIndex(i)))
       out.push_back(point.value());
   return out;
 }

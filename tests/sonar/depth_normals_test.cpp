@@ -107,7 +107,9 @@ TEST(DepthNormals, NoisyPlanesAndSpheresKeepTheirNormals) {
                    after = echo_error(shape, in, found.normals);
       const double angle = median_angle_deg(shape, in, found.normals);
       EXPECT_LT(after, 0.015);  // of 0.1 to 42 % before
-      if (before > 0.02) EXPECT_LT(after, 0.15 * before);
+      if (before > 0.02) {
+        EXPECT_LT(after, 0.15 * before);
+      }
       EXPECT_LT(angle, noise_m < 0.02 ? 4.0 : 7.0);
       EXPECT_NEAR(found.estimate.noise_m / noise_m, 1.0, 0.15);
     }

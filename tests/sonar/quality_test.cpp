@@ -222,7 +222,7 @@ TEST(SonarQuality, RowsBeyondTheApertureDoNotThinThoseThatASmallTargetNeeds) {
   EXPECT_GT(grid.limits.elevation_max_rad, radians(40.0));
   // A lattice whose cells' half diagonal is shorter than the ball's radius.
   EXPECT_LT(10.0 * std::hypot(grid.azimuth_step_rad(), grid.elevation_step_rad()), 0.01);
-  EXPECT_LT(double{grid.bins.azimuth} * grid.bins.elevation, 9.5e6);
+  EXPECT_LT(static_cast<double>(grid.bins.azimuth) * grid.bins.elevation, 9.5e6);
   sonar.least_target_m = 0.3;
   EXPECT_LE(plan_heads(sonar)->front().samples.bins.elevation, 1536u);
 }

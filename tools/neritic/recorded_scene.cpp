@@ -130,9 +130,11 @@ Result<SampleLog> read_recording(const std::string& file) {
 
 Result<std::optional<SavedState>> start_of(const SampleLog& log, const std::string& file,
                                            const PhysicsWorld& world) {
-  if (log.start_state.empty()) return std::optional<SavedState>();
-  NERITIC_TRY(SavedState state, parse_state(world.state_format(), log.start_state, file));
-  return std::optional<SavedState>(std::move(state));
+  std::optional<SavedState> start;
+  if (!log.start_state.empty()) {
+    NERITIC_TRY(start, parse_state(world.state_format(), log.start_state, file));
+  }
+  return start;
 }
 
 Result<std::unique_ptr<Replay>> Replay::of(SampleLog log, const std::string& file,
