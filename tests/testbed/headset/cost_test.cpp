@@ -95,9 +95,10 @@ class ThreadTime final : public SampleSource {
 
 using HeadsetCost = HeadsetRun;
 
-// 1.5 ms, the fake runtime's strict checks (a sixth) included; a third more is left for caches that
-// a busy machine shares. With the validation layers it is far more: they are off.
-TEST_F(HeadsetCost, AStereoFrameOfTheDiveTakesAMillisecondAndAHalfOfOneCore) {
+// The aim is 1.5 ms. On a quiet core it takes 1.1, the fake runtime's strict checks (a sixth)
+// included, and up to 1.6 beside neighbours that take its caches: so the limit leaves room. With
+// the validation layers it is far more: they are off.
+TEST_F(HeadsetCost, AStereoFrameOfTheWholeDiveTakesLittleOfOneCore) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "an instrumented build";
 #endif
