@@ -138,7 +138,7 @@ void Things::choose(std::span<const PhysicsHuman> humans, const PhysicsInputs& i
     ObjectState& object = after.objects()[things_[i].object];
     if (acting(object.groups.front()) == Authority::kLive) {
       if (state.holder != 0) give(i, 0);  // a device has it
-      state.rests = 0;                    // a device took it out of its rack
+      state.rests = things_[i].settings.racked ? 1 : 0;
       continue;
     }
     object.motion = before.objects()[things_[i].object].motion;
