@@ -55,6 +55,27 @@ TEST(SceneThing, ABuoyantOneRisesAndFloatsAtTheSurface) {
   EXPECT_LT(glm::length(dive.state().objects()[0].motion.velocity_m_s), 0.2);
 }
 
+// As a task that moves its rack does: once nobody tells its place any more, it lies there.
+TEST(SceneThing, ARackedOneLiesWhereItWasPlaced) {
+  TestDive dive = dive_of(
+      kStillWater + thing_text("[0, -10, -0.5]", "mass_kg = 1.5, volume_l = 0.5, racked = true"));
+  ObjectPose there;
+  there.world_from_object.position_m = Vec3(4.0, -9.0, 1.0);
+  const auto say = [&](PayloadKind kind, const Payload& payload) {
+    EXPECT_TRUE(
+        send(*dive.simulation, dive.world->streams().id(OwnerSort::kObject, 0, kind), payload));
+  };
+  const auto acts = [&](Authority who) {
+    return hand_over(0, who, dive.simulation->inbox().open("test").value());
+  };
+  say(PayloadKind::kEvent, acts(Authority::kLive));
+  say(PayloadKind::kObjectPose, there);
+  dive.run(0.1);
+  say(PayloadKind::kEvent, acts(Authority::kAutopilot));
+  dive.run(5.0);
+  EXPECT_LT(glm::distance(tool_place(dive), Vec3(4.0, -9.0, 1.0)), 1e-9);
+}
+
 TEST(SceneThing, ARackedOneStaysAndAGripperThatClosesTakesItsWeight) {
   const std::string text =
       kStillWater +
