@@ -34,7 +34,7 @@ MEASURES = {
     "sphere_bin_error": ("bins", "off the bin of the geometry, at most a part of one"),
     "mask_iou": ("", "overlap over union of the diver's bins with the ray caster's"),
     "columns_within_2_bins": ("", "share of the columns that both see whose nearest range agrees within 2 bins"),
-    "ambiguity_range_bins": ("bins", "largest change of the diver's nearest range when it is tilted up or down"),
+    "ambiguity_range_bins": ("bins", "largest change of the diver's nearest range when it is tilted up or down, but for what the edge of the aperture cuts off"),
     "ambiguity_bearing_bins": ("bins", "largest change of its bearing, the middle of its echo's energy"),
     "early_energy": ("", "share of the diver's energy that is heard more than 2 bins before its surface"),
     "overlap_up_down": ("", "overlap over union of the masks of the diver up and down: 1 cannot be told apart"),
@@ -81,6 +81,13 @@ def _tilt(triangles, tilt_rad):
     across = scene_matrix(-math.degrees(math.atan2(middle[0], -middle[2])))
     c, s = math.cos(tilt_rad), math.sin(tilt_rad)
     return across @ np.array([[1, 0, 0], [0, c, -s], [0, s, c]]) @ across.T
+
+
+def _nearest_m(triangles):
+    """Range of the nearest corner that lies within the aperture's elevations."""
+    corners = triangles.reshape(-1, 3)
+    within = np.abs(np.arctan2(corners[:, 1], np.hypot(corners[:, 0], corners[:, 2]))) <= math.radians(ELEVATION_DEG / 2)
+    return np.linalg.norm(corners[within], axis=1).min(initial=RANGE_M[1])
 
 
 def _sonar(settings):
@@ -153,7 +160,9 @@ def run(settings, seed, tools):
     moved_range, moved_bearing = [], []
     for name in ("up", "down"):
         other = _near(masks[name])
-        moved_range.append(abs(other[other >= 0].min(initial=BINS) - near[near >= 0].min(initial=BINS)))
+        tilt = _tilt(level[2], PLACES[name][1] * math.radians(settings["tilt_deg"]))
+        cut = (_nearest_m(level[2] @ tilt.T) - _nearest_m(level[2])) / (RANGE_M[1] - RANGE_M[0]) * BINS
+        moved_range.append(abs(other[other >= 0].min(initial=BINS) - near[near >= 0].min(initial=BINS) - cut))
         moved_bearing.append(abs(bearing[name] - bearing["level"]))
     measures = {
         "sphere_bin": sphere_bin, "sphere_bin_error": sphere_bin - math.floor(exact),
