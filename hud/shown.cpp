@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diver/condition.hpp"
 #include "diver/gas_label.hpp"
 #include "diver/oxygen_exposure.hpp"
 
@@ -84,8 +85,8 @@ FixedText percent(double share) {
   return std::isnan(share) ? FixedText("--") : FixedText::of("{:.0f}", 100.0 * share);
 }
 
-// Cautions begin where the effects do (diver/condition.hpp); oxygen's at half of what the diver
-// bears.
+// Saturation and carbon dioxide caution where they begin to slow, narcosis from 30 m on, the core
+// below 36 C, oxygen from half of what the diver bears on.
 ShownCondition condition_of(const DiveData& d, Units units) {
   ShownCondition out;
   out.known = d.unconscious || std::isfinite(d.slowing);
@@ -102,12 +103,11 @@ ShownCondition condition_of(const DiveData& d, Units units) {
     out.core = FixedText::of("{:.1f}", feet ? 32.0 + 1.8 * d.core_c : d.core_c);
   out.slowing = std::isnan(d.slowing) ? FixedText("--") : FixedText::of("{:.2f}", d.slowing);
   out.strength = percent(d.strength);
-  const bool cautions[] = {d.saturation<0.82, d.co2_mmhg> 51.0,
-                           d.narcotic_depth_m > 30.0,
-                           d.oxygen_dose > 0.5,
-                           d.core_c < 36.0,
-                           d.slowing >= 1.2,
-                           d.strength < 0.9};
+  const bool low = diver::hypoxia_slowing(d.saturation) > 0.0, cold = d.core_c < 36.0,
+             weak = d.strength < 0.9;
+  const bool acid = diver::co2_slowing(d.co2_mmhg) > 0.0, narcotic = d.narcotic_depth_m > 30.0;
+  const bool toxic = d.oxygen_dose > 0.5, slow = d.slowing >= 1.2;
+  const bool cautions[] = {low, acid, narcotic, toxic, cold, slow, weak};
   for (std::size_t i = 0; i < std::size(cautions); ++i)
     if (cautions[i]) out.cautions = static_cast<std::uint8_t>(out.cautions | (1u << i));
   return out;

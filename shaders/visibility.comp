@@ -4,8 +4,8 @@
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Which share of the sun's beam (red), of the light round it (green) and of the surroundings (blue) reaches a
-// surface; alpha: its distance. Taps of 16 neighbours differ, and the blur that follows joins them.
+// The share of the sun's beam (red), of the light round it (green) and of the surroundings (blue) that
+// reaches a surface; alpha: its distance. Taps of 16 neighbours differ, and the blur that follows joins them.
 #include "shared/lighting.h"
 #include "shared/octahedral.h"
 #include "shared/visibility.glsl"

@@ -73,7 +73,7 @@ void Canvas::blend(int x, int y, const Color& color, float coverage) {
 }
 
 void Canvas::paint(const Mask& mask, const Color& color) {
-  // What a byte becomes where a large area is covered whole: looked up, since most of it is.
+  // Most of a large area is covered whole: there a table gives what each byte becomes.
   constexpr std::size_t kLarge = 4096;
   std::array<std::array<std::uint8_t, 256>, 4> whole;
   const bool large = mask.coverage.size() >= kLarge;

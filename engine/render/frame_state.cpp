@@ -13,7 +13,7 @@
 namespace neritic::render {
 namespace {
 
-// Which joints of a skin hang on the node "head"; none where the model has no such node.
+// Marks the joints of a skin that hang on the node "head"; none where the model has no such node.
 std::vector<bool> joints_of_head(const scene::Model& model, int skin) {
   const auto& joints = model.skins[static_cast<std::size_t>(skin)].joints;
   std::vector<bool> out(joints.size(), false);

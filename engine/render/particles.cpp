@@ -14,7 +14,7 @@ std::uint32_t wobbling(std::uint32_t look, std::uint32_t swing) {
   return (look & ~255u) | ((look + swing) & 255u);
 }
 
-// What is drawn together: particles in a row, bubbles before all others.
+// Particles in a row that are drawn together; bubbles come before all others.
 struct Drawn {
   bool bubble;
   double distance2_m2;
@@ -58,14 +58,14 @@ ViewParticles view_particles(const scene::MotionSource& motion, SnowField& field
   const double swings = time_s * shared::kWobble_hz;
   const auto swing = static_cast<std::uint32_t>(256.0 * (swings - std::floor(swings)));
   const scene::Water& water = *motion.scene().water;
-  const Vec3 origin = views.origin_m();
+  const SphereCulling sight(views);
   // Before a lamp a grain may be far brighter than the water.
   const bool dim = motion.scene().lamps.empty() && motion.scene().model_lights.empty();
   std::vector<shared::Particle> placed;
   std::vector<Drawn> drawn;
   if (water.snow) {
     std::vector<SnowField::Run> cells;
-    field.place(*water.snow, seed, views, time_s, snow_share, dim ? pixels_at_a_metre(views) : 0.0,
+    field.place(*water.snow, seed, sight, time_s, snow_share, dim ? pixels_at_a_metre(views) : 0.0,
                 placed, cells);
     for (const SnowField::Run& cell : cells)
       drawn.push_back({false, cell.distance2_m2, cell.first, cell.count});
@@ -73,13 +73,12 @@ ViewParticles view_particles(const scene::MotionSource& motion, SnowField& field
   }
   std::vector<WorldParticle> others;
   for (std::size_t i = 0; i < water.bubbles.size(); ++i)
-    add_bubbles(motion, water.bubbles[i], i, seed, time_s, others, &views);
+    add_bubbles(motion, water.bubbles[i], i, seed, time_s, others, &sight);
   for (std::size_t i = 0; i < water.silt.size(); ++i)
     add_silt(motion, water.silt[i], i, seed, time_s, others);
-  const SphereCulling culling(views);
   for (const WorldParticle& particle : others) {
-    const Vec3 at = particle.position_m - origin;
-    if (!(particle.opacity > 0.0 && culling.may_see(at, particle.radius_m + kSpotRoom_m))) continue;
+    const Vec3 at = particle.position_m - sight.origin_m();
+    if (!(particle.opacity > 0.0 && sight.may_see(at, particle.radius_m + kSpotRoom_m))) continue;
     const bool bubble = particle.kind == shared::kParticleBubble;
     drawn.push_back({bubble, glm::dot(at, at), placed.size(), 1});
     placed.push_back({Vec3f(at), static_cast<float>(particle.radius_m),

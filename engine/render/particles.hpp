@@ -30,11 +30,11 @@ std::vector<WorldParticle> snow_around(const scene::Snow& snow, std::uint64_t se
 
 // Speed at which a bubble rises in still water.
 double bubble_speed_m_s(double radius_m);
-// A source's bubbles, and its silt, at a time; number: of the source, for its randomness; views:
-// only what one of them may see.
+// A source's bubbles, and its silt, at a time; number: of the source, for its randomness; sight:
+// only bubbles that may lie in it.
 void add_bubbles(const scene::MotionSource& motion, const scene::BubbleSource& source,
                  std::uint64_t number, std::uint64_t seed, double time_s,
-                 std::vector<WorldParticle>& out, const ViewSet* views = nullptr);
+                 std::vector<WorldParticle>& out, const SphereCulling* sight = nullptr);
 void add_silt(const scene::MotionSource& motion, const scene::SiltSource& source,
               std::uint64_t number, std::uint64_t seed, double time_s,
               std::vector<WorldParticle>& out);

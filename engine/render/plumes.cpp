@@ -1,7 +1,6 @@
 // Bubbles and silt: each particle's place follows in closed form from when and where it was set
 // free.
 #include <algorithm>
-#include <optional>
 
 #include "engine/core/random.hpp"
 #include "engine/render/particles.hpp"
@@ -78,9 +77,7 @@ double bubble_speed_m_s(double radius_m) {
 
 void add_bubbles(const scene::MotionSource& motion, const scene::BubbleSource& source,
                  std::uint64_t number, std::uint64_t seed, double time_s,
-                 std::vector<WorldParticle>& out, const ViewSet* views) {
-  std::optional<SphereCulling> culling;
-  if (views) culling.emplace(*views);
+                 std::vector<WorldParticle>& out, const SphereCulling* sight) {
   const bool leaks = source.breath_s <= 0.0;
   const double period_s = leaks ? 1.0 : source.breath_s;
   const double out_s = leaks ? period_s : kOutShare * period_s;
@@ -123,8 +120,8 @@ void add_bubbles(const scene::MotionSource& motion, const scene::BubbleSource& s
           motion.world_from_object(static_cast<std::size_t>(source.object), born_s) *
           source.position_m;
       // About where it is, with room for the plume's width, its swing and its growth.
-      if (culling && !culling->may_see(from_m + Vec3(0.0, rise_m, 0.0) - views->origin_m(),
-                                       plume_m(rise_m) + 10.0 * own_m + kSpotRoom_m))
+      if (sight && !sight->may_see(from_m + Vec3(0.0, rise_m, 0.0) - sight->origin_m(),
+                                   plume_m(rise_m) + 10.0 * own_m + kSpotRoom_m))
         continue;
       const WorldParticle bubble = risen(source, from_m, own_m, age_s, key, index + 4);
       if (bubble.position_m.y < -bubble.radius_m) out.push_back(bubble);

@@ -156,8 +156,8 @@ class Renderer {
   static graph::ImageHandle declare_shadow_copy(graph::FrameGraph& graph, const std::string& name,
                                                 graph::ImageHandle maps, std::uint32_t size,
                                                 std::uint32_t layers);
-  // Which share of sun, sky and surroundings surfaces see, by the sun's maps (an empty handle: no
-  // shadows) and by ambient occlusion.
+  // The share of sun, sky and surroundings that surfaces see, by the sun's maps (an empty handle:
+  // no shadows) and by ambient occlusion.
   Result<graph::ImageHandle> declare_visibility(graph::FrameGraph& graph, const std::string& prefix,
                                                 const GBuffer& gbuffer, const ViewSet& views,
                                                 const shared::VisibilityParams& params,

@@ -134,29 +134,28 @@ void SnowField::visit(const scene::Snow& snow, const Vec3& center_m, double time
   if (cells_.size() > 4 * seen + 1024 && calls_ % kKeptCalls == 0) forget_unused();
 }
 
-void SnowField::place(const scene::Snow& snow, std::uint64_t seed, const ViewSet& views,
+void SnowField::place(const scene::Snow& snow, std::uint64_t seed, const SphereCulling& sight,
                       double time_s, double share, double faint_pixels,
                       std::vector<shared::Particle>& out, std::vector<Run>& runs) {
   if (!(snow.density_m3 > 0.0 && share > 0.0)) return;
   begin(snow, seed);
-  const SphereCulling culling(views);
   const Vec3f moved(snow.drift_m_s * snow.shutter_s);
   out.reserve(out.size() + placed_ + placed_ / 8);
   const std::size_t before = out.size();
   bool whole = false;  // the cell is in sight
   const auto wanted = [&](const Vec3& middle_m, double radius_m) {
-    if (!culling.may_see(middle_m, radius_m)) return false;
-    whole = culling.sees_all_of(middle_m, radius_m);
+    if (!sight.may_see(middle_m, radius_m)) return false;
+    whole = sight.sees_all_of(middle_m, radius_m);
     runs.push_back({glm::dot(middle_m, middle_m), out.size(), 0});
     return true;
   };
-  visit(snow, views.origin_m(), time_s, share, wanted,
+  visit(snow, sight.origin_m(), time_s, share, wanted,
         [&](const Grain& grain, const Vec3& at_m, double opacity) {
           if (!(opacity > 0.0)) return;
           if (faint_pixels > 0.0 &&
               fades_away(grain.radius_m, opacity, glm::dot(at_m, at_m), faint_pixels))
             return;
-          if (!whole && !culling.may_see(at_m, grain.radius_m + kSpotRoom_m)) return;
+          if (!whole && !sight.may_see(at_m, grain.radius_m + kSpotRoom_m)) return;
           out.push_back({Vec3f(at_m), static_cast<float>(grain.radius_m), moved,
                          static_cast<float>(opacity), shared::kParticleSnow, grain.look});
           ++runs.back().count;

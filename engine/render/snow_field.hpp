@@ -18,11 +18,11 @@ class SnowField {
     std::size_t first = 0, count = 0;
   };
 
-  // Places the snow that a view set sees, within range_m of its origin and relative to it, cell by
-  // cell; share: of the grains. faint_pixels: that a metre takes at one metre ahead; if not 0,
-  // grains too faint to be seen there are left out. Other settings or another seed than the call
-  // before it forget all cells.
-  void place(const scene::Snow& snow, std::uint64_t seed, const ViewSet& views, double time_s,
+  // Places the snow in sight, within range_m of its origin and relative to it, cell by cell; share:
+  // of the grains. faint_pixels: that a metre takes at one metre ahead; if not 0, grains too faint
+  // to be seen there are left out. Other settings or another seed than the call before it forget
+  // all cells.
+  void place(const scene::Snow& snow, std::uint64_t seed, const SphereCulling& sight, double time_s,
              double share, double faint_pixels, std::vector<shared::Particle>& out,
              std::vector<Run>& runs);
   // All of it around a point, as snow_around says.

@@ -78,8 +78,7 @@ bool any_view_sees(const ViewSet& set, const Vec3& center_from_origin_m, double 
   return false;
 }
 
-SphereCulling::SphereCulling(const ViewSet& set) {
-  const Vec3 origin = set.origin_m();
+SphereCulling::SphereCulling(const ViewSet& set) : origin_m_(set.origin_m()) {
   for (const ViewDesc& view : set.views) {
     const FrustumTangents& t = view.tangents;
     const Vec3 inward[5] = {{-1.0, view.lean, -t.right},
@@ -87,7 +86,7 @@ SphereCulling::SphereCulling(const ViewSet& set) {
                             {0.0, -1.0, -t.top},
                             {0.0, 1.0, t.bottom},
                             {0.0, 0.0, -1.0}};
-    const Vec3 eye_m = view.world_from_view.position_m - origin;
+    const Vec3 eye_m = view.world_from_view.position_m - origin_m_;
     auto& planes = views_.emplace_back();
     for (std::size_t i = 0; i < 5; ++i) {
       planes[i].normal = view.world_from_view.rotation * glm::normalize(inward[i]);
@@ -97,7 +96,7 @@ SphereCulling::SphereCulling(const ViewSet& set) {
   }
   if (set.within)
     within_ =
-        Plane{set.within->normal, glm::dot(set.within->normal, origin) + set.within->offset_m};
+        Plane{set.within->normal, glm::dot(set.within->normal, origin_m_) + set.within->offset_m};
 }
 
 bool SphereCulling::may_see(const Vec3& center_m, double radius_m) const {

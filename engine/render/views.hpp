@@ -64,6 +64,8 @@ double largest_stretch(const Mat4& m);
 class SphereCulling {
  public:
   explicit SphereCulling(const ViewSet& set);
+  // From where the set's centers count, in the world.
+  const Vec3& origin_m() const { return origin_m_; }
   bool may_see(const Vec3& center_from_origin_m, double radius_m) const;
   // Whether one view sees all of the sphere.
   bool sees_all_of(const Vec3& center_from_origin_m, double radius_m) const;
@@ -73,6 +75,7 @@ class SphereCulling {
     Vec3 normal{0.0};  // unit, inwards
     double offset_m = 0.0;
   };
+  Vec3 origin_m_;
   std::vector<std::array<Plane, 5>> views_;
   std::optional<Plane> within_;
 };

@@ -1,4 +1,4 @@
-// What Mesa's CPU driver needs to read uniform blocks fast. It reads a number of a block once for all lanes only in
+// Helps Mesa's CPU driver read uniform blocks fast. It reads a number of a block once for all lanes only in
 // compute, at a fixed offset and before any branch or early return of main(): so such files copy what they need
 // there. Elsewhere it reads lane by lane, eight loads and inserts for each number; where all lanes go the same way,
 // each can read another number (lane_of()) and pass it on (from_lane()). Compute and fragment stages, GLSL only.

@@ -29,7 +29,7 @@ enum class Packing {
   // normals as colours. meta.json says how. Other arrays as .npz.
   kPng,
 };
-// Which of a frame's data are written, and how.
+// The data of a frame that are written, and how.
 struct FrameFormat {
   Datasets datasets = Datasets::all();
   Packing packing = Packing::kNone;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr TimeNs kMs = 1'000'000, kS = 1'000'000'000;
 
-// Which of a clock's ticks lie in the time since the last call. Ticks are by the device's clock.
+// Tells which of a clock's ticks lie in the time since the last call. Ticks are by the device's clock.
 class Ticks {
  public:
   explicit Ticks(double rate_hz) : rate_hz_(rate_hz) {}

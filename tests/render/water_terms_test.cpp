@@ -181,8 +181,8 @@ TEST(Snow, KeptCellsGiveTheGrainsOfCellsThatAreMadeAnew) {
   check(Vec3(0.0, -20.0, 0.0), 0.0, 6);
 }
 
-// What a view set gets: all that is in sight of what is around, whether its cell is wholly in sight
-// or not, and cells from far to near.
+// A view set gets all grains in its sight, whether their cell is wholly in sight or not, cell by
+// cell from far to near.
 TEST(Snow, AViewGetsTheGrainsInItsSight) {
   scene::Scene scene;
   scene.water.emplace();

@@ -10,7 +10,7 @@ TLX = ["mental demand", "physical demand", "temporal demand", "performance (0 pe
 SSQ = ["general discomfort", "fatigue", "headache", "eye strain", "difficulty focusing", "salivation increasing", "sweating",
        "nausea", "difficulty concentrating", "fullness of the head", "blurred vision", "dizziness with eyes open",
        "dizziness with eyes closed", "vertigo", "stomach awareness", "burping"]
-# Which symptoms count for nausea, oculomotor, disorientation, in the order above (Kennedy et al. 1993).
+# The symptoms that count for nausea, oculomotor, disorientation, in the order above (Kennedy et al. 1993).
 NAUSEA, OCULOMOTOR, DISORIENTATION = (0, 5, 6, 7, 8, 14, 15), (0, 1, 2, 3, 4, 8, 10), (4, 7, 9, 10, 11, 12, 13)
 PRESENCE = ["sense of being in the place", "moments when it was reality for me", "a place I visited, not pictures I saw",
             "stronger sense of being there than elsewhere", "memory of it like memory of a place",

@@ -1,4 +1,5 @@
-// Which flags of `neritic dive` go together; kBadInput for those that do not. Pure; any thread.
+// Checks which flags of `neritic dive` go together: kBadInput for those that do not. Pure; any
+// thread.
 #pragma once
 
 #include "engine/scene/scene.hpp"

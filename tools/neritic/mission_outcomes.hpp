@@ -23,7 +23,7 @@ struct MissionOutcome {
 // Whether a vehicle has a mission that ends.
 bool has_end(const testbed::PhysicsVehicle& vehicle);
 
-// Of all vehicles with one. log: of all steps up to the state.
+// The outcome of each vehicle that has a mission. log: of all steps up to the state.
 std::vector<MissionOutcome> outcomes_of(const testbed::PhysicsWorld& world,
                                         const testbed::PhysicsState& state,
                                         const testbed::DiveLog& log, std::uint64_t seed);

@@ -58,7 +58,7 @@ VkFormatFeatureFlags features_of(VkImageUsageFlags usage) {
   return features;
 }
 
-// Of one session, whose making costs most of the test.
+// One session shows both, since making it costs most of the test.
 TEST_P(VulkanObjects, AreAllNamedAndImagesHaveFormatsThatDevicesAreChosenFor) {
   const test::VulkanRecord record;
   NERITIC_ASSERT_STATUS(render());
