@@ -4,7 +4,7 @@
     world = neritic.open("scene.toml", seed=1)
     rov = world["rov"]
     rov.goto(4, 3, -7)                # east, north, up in metres
-    obs = world.tick(240)             # so many physics steps
+    obs = world.tick(240)             # physics steps
     print(obs["rov/imu"].linear_acceleration, world.truth("rov").position)
 
 Conventions are ROS's: the world is east, north, up; bodies are forward, left, up; quaternions are
@@ -13,7 +13,7 @@ x, y, z, w; SI units, radians. Times are simulated seconds.
 open(scene)       a World: tick, observations, agents, images, save, restore, record
 connect(address)  the same on a server, `neritic serve`
 vector(task)      thousands of environments at once, with Gymnasium's vector interface
-Error, BadInput   what is raised, in one line
+Error, BadInput   the exceptions, one line each
 """
 
 from . import _core

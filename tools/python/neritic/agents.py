@@ -21,8 +21,8 @@ def _choice(name: str, what: str, word: str, words: Sequence[str]) -> int:
 
 
 class Agent:
-    """A vehicle, a diver or an object of the scene. A command holds until the next one, until
-    release(), or, with hold > 0, until so many seconds passed without one."""
+    """A vehicle, a diver or an object of the scene. A command holds until the next one, until release() or,
+    with hold > 0, for that number of seconds."""
 
     def __init__(self, world: World, name: str) -> None:
         self._world, self.name = world, name
@@ -30,9 +30,9 @@ class Agent:
         """The number of its modem among the scene's, from 1 on; 0: it has none."""
 
     def send(self, data: Union[bytes, str], to: Optional[str] = None) -> None:
-        """Sends up to 64 bytes by sound with the next step, to one agent's modem or to all (None). Whether
-        and when it arrives is the water's affair: receive() of the other one, and readings of NAME/modem
-        (event: MODEM_EVENTS)."""
+        """Sends up to 64 bytes by sound with the next step, to one agent's modem or to all (None). The message
+        arrives later or is lost: the other agent's receive() returns it, and readings of NAME/modem tell
+        what became of it (event: MODEM_EVENTS)."""
         if isinstance(data, str):
             data = data.encode()
         number = 0
@@ -59,8 +59,8 @@ class Agent:
                                   self._world.source)
 
     def grip(self, choice: str) -> None:
-        """Its gripper or hands: "close" holds what comes into reach, "open" lets go, "auto" keeps what it has
-        (hands take what a gripper holds out). Readings of NAME/gripper tell."""
+        """Its gripper or hands: "close" grabs what comes into reach, "open" drops it, "auto" keeps what it has
+        (hands take what a gripper holds out). Readings of NAME/gripper tell the result."""
         self.command("grip", [_choice(self.name, "grip", choice, ("auto", "open", "close"))])
 
     def release(self) -> None:
@@ -84,18 +84,18 @@ class Vehicle(Agent):
 
     def goto(self, x: float, y: float, z: float, yaw: float = 0.0,
              velocity: Sequence[float] = (0.0, 0.0, 0.0), hold: float = 0.0) -> None:
-        """Be there, level: east, north, up in metres, yaw from east towards north. velocity: of the
-        place itself, if it moves."""
+        """Go to this place and stay there, level: east, north, up in metres, yaw from east towards north.
+        velocity: of the place itself, if it moves."""
         self.command("goto", [x, y, z, yaw, *velocity], hold)
 
     def velocity(self, forward: float, left: float = 0.0, up: float = 0.0, yaw_rate: float = 0.0,
                  hold: float = 0.0) -> None:
-        """Move so over ground, level, in m/s of its heading and rad/s."""
+        """Move over ground at this velocity, level: m/s relative to the heading, and rad/s."""
         self.command("velocity", [forward, left, up, yaw_rate], hold)
 
     def wrench(self, force: Sequence[float], torque: Sequence[float] = (0.0, 0.0, 0.0),
                hold: float = 0.0) -> None:
-        """Forces and moments in N and N m, body axes. Depth and heading are held where it is 0."""
+        """Forces and moments in N and N m, body axes. Where they are 0, depth and heading are held."""
         self.command("wrench", [*force, *torque], hold)
 
     def thrusters(self, force_n: ArrayLike, hold: float = 0.0) -> None:
@@ -107,7 +107,7 @@ class Vehicle(Agent):
         self.command("pwm", width_us, hold)
 
     def fail(self, thrusters: Sequence[int] = ()) -> None:
-        """These thrusters, counted from 0, give nothing from now on; () mends all."""
+        """These thrusters, counted from 0, give no thrust from now on; () repairs all."""
         failed = np.zeros(len(self.thruster_n))
         failed[list(thrusters)] = 1.0
         self.command("faults", failed)
@@ -128,7 +128,7 @@ class Diver(Agent):
 
     def head(self, orientation: Sequence[float], position: Optional[Sequence[float]] = None,
              hold: float = 0.0) -> None:
-        """Where the head looks (world from head, forward, left, up) and, if position is given, is."""
+        """The head's orientation (world from head; forward, left, up) and, if given, its position."""
         placed = position is not None
         self.command("head", [*(position or (0.0, 0.0, 0.0)), *orientation, placed], hold)
 
@@ -136,10 +136,10 @@ class Diver(Agent):
         """Breathe from that tank; 0 is the first."""
         self.command("gas", [tank])
 
-
     def regulator(self, supply: str = "auto", flow: str = "auto") -> None:
-        """What it breathes ("own" tanks, the "donor"'s, "auto": the donor's once nothing else comes), and whether
-        its regulator "flows" freely, "holds", or "auto": as the scene has it. Readings of NAME/supply tell."""
+        """supply: the diver breathes from "own" tanks, the "donor"'s, or the donor's once the own ones are empty
+        ("auto"). flow: the regulator "flows" freely, "holds", or does what the scene says ("auto"). Readings of
+        NAME/supply tell the result."""
         self.command("regulator", [_choice(self.name, "supply", supply, ("auto", "own", "donor")),
                                    _choice(self.name, "flow", flow, ("auto", "flows", "holds"))])
 
@@ -150,13 +150,12 @@ class TrackedObject(Agent):
     def pose(self, position: Sequence[float], orientation: Sequence[float] = (0.0, 0.0, 0.0, 1.0),
              velocity: Optional[Sequence[float]] = None,
              angular_velocity: Sequence[float] = (0.0, 0.0, 0.0), hold: float = 0.0) -> None:
-        """It is there now. Velocities are over world axes; absent: they follow from two poses."""
+        """Places it there now. Velocities are in world axes; without them they follow from two poses."""
         values = [*position, *orientation]
         if velocity is not None:
             values += [*velocity, *angular_velocity]
         self.command("pose", values, hold)
 
     def joints(self, rotations: ArrayLike, hold: float = 0.0) -> None:
-        """The limbs of a diver who swims elsewhere, with the poses: as of Diver.joints(). The object has
-        a diver's model."""
+        """The limbs of a diver who swims elsewhere, as in Diver.joints(). The object has a diver's model."""
         self.command("joints", rotations, hold)

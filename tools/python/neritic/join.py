@@ -2,12 +2,11 @@
 
     python3 -m neritic.join tcp://SERVER:47910 scene.toml --as rov
 
-The scene here has the participant by its own physics and the others as objects with a pose input; the
-server's scene has the participant so. Poses go both ways as samples, 60 times a second, with velocities,
-and each side moves them on between two (testbed/samples). A participant that falls silent for half a
-second goes back to its own track. Vehicles and divers join alike: elsewhere a diver is an object with a diver's
-model, whose limbs are the diver's own: a suit here moves them there.
-Messages by modem stay in the scene where they are sent.
+In the scene here the participant moves by physics, and the others are objects with a pose input. In the
+server's scene the participant is such an object. Poses go both ways as samples, 60 times a second, with
+velocities, and each side moves them on between two (testbed/samples). A participant that is silent for half a
+second returns to its own track. Elsewhere a diver is an object with a diver's model and the diver's own
+limbs: a suit here moves them there. Messages by modem stay in the scene where they are sent.
 """
 
 from __future__ import annotations
@@ -51,7 +50,7 @@ def _place(world: World, name: str, truth: Truth, diver: bool) -> None:
 
 
 def exchange(here: World, there: RemoteWorld, own: Optional[str]) -> int:
-    """Sends where `own` is and fetches where the others are; the number of those. None: only looks."""
+    """Sends the pose of `own` (None: no one) and fetches those of the others; returns their number."""
     if own is not None:
         _place(there, own, here.truth(own), isinstance(here[own], Diver))
     placed = 0
@@ -64,7 +63,7 @@ def exchange(here: World, there: RemoteWorld, own: Optional[str]) -> int:
 
 def join(here: World, there: RemoteWorld, own: Optional[str], seconds: Optional[float] = None,
          rate_hz: float = 60.0) -> None:
-    """Exchanges poses while the world here, opened with real_time=True, goes on."""
+    """Exchanges poses while the world here, opened with real_time=True, runs."""
     steps = max(1, round(1.0 / (rate_hz * here.step_s)))
     end = None if seconds is None else time.monotonic() + seconds
     while end is None or time.monotonic() < end:
@@ -78,10 +77,10 @@ def main() -> None:
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("server", help="tcp://ADDRESS:PORT")
     parser.add_argument("scene", help="the scene here")
-    parser.add_argument("--as", dest="own", help="the participant that is here; none: only looks")
+    parser.add_argument("--as", dest="own", help="the participant that is here (default: none)")
     parser.add_argument("--key", help="NAME.secret of neritic keys")
     parser.add_argument("--server-key", help="server.public")
-    parser.add_argument("--seconds", type=float, help="ends after so long")
+    parser.add_argument("--seconds", type=float, help="ends after this time")
     flags = parser.parse_args()
     name = flags.own or World.source
     with open(flags.scene, real_time=True) as here, \

@@ -18,7 +18,7 @@ Float = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Stream:
-    """All that a world can tell or be told, by name."""
+    """A stream of readings, inputs or images, by name."""
 
     name: str  # "rov/imu"
     owner: str  # "rov"
@@ -104,8 +104,8 @@ class Image:
 
     @property
     def pixels(self) -> NDArray[Any]:
-        """Rows from the top; [row, column] or [row, column, channel]. Of a sonar: rows are ranges,
-        nearest first, columns bearings, full port first."""
+        """Rows from the top; [row, column] or [row, column, channel]. A sonar's rows are ranges, nearest first,
+        its columns bearings, full port first."""
         return self._of.pixels
 
     @property
@@ -115,7 +115,7 @@ class Image:
 
     @property
     def frame(self) -> str:
-        """The frame whose pose `position` and `orientation` say."""
+        """The frame whose pose `position` and `orientation` give."""
         return self._stream.frame
 
     @property
@@ -169,8 +169,8 @@ class Image:
 
 
 class Observations(Mapping[str, Union[Reading, Image]]):
-    """The newest reading of each stream that has arrived, and the newest image of each stream that is
-    wanted. Does not change with later ticks."""
+    """The newest reading of each stream that has arrived, and the newest image of each requested stream. It
+    does not change with later ticks."""
 
     __slots__ = ("_world", "_of", "_images")
 

@@ -99,8 +99,8 @@ class VectorEnv:
         shares of each thruster's largest force or, with control="wrench", of the largest surge, sway,
         heave, roll, pitch, yaw.
 
-        An episode that ended begins anew in the next step, which then takes no action and rewards 0; with
-        autoreset="same_step" in the same step: info has "final_obs" and "_final_obs" then."""
+        An episode that ended begins anew in the next step, which ignores its action and rewards 0. With
+        autoreset="same_step" it begins anew in the same step, and info has "final_obs" and "_final_obs"."""
         self._core.step(actions)
         info: dict[str, Any] = {}
         if self._same_step:

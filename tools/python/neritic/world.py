@@ -104,7 +104,7 @@ class World:
     # Time.
 
     def tick(self, steps: int = 1) -> Observations:
-        """Takes so many physics steps and returns what has arrived by then. Callbacks run after them."""
+        """Runs this number of physics steps and returns what has arrived by then. Callbacks run after them."""
         of = self._core.tick(steps)
         self._after_tick()
         return Observations(self, of, self._images)
@@ -114,8 +114,8 @@ class World:
         return Observations(self, self._core.newest(), self._images)
 
     async def ticks(self, steps: int = 1, count: Optional[int] = None) -> AsyncIterator[Observations]:
-        """An asynchronous iterator of ticks of so many steps: each runs on another thread, so that the
-        event loop goes on. count: so many ticks; None: without end."""
+        """Ticks of this number of steps, as an asynchronous iterator. Each runs on another thread, so that the
+        event loop continues. count: the number of ticks; None: without end."""
         done = 0
         while count is None or done < count:
             of = await asyncio.get_running_loop().run_in_executor(None, self._core.tick, steps)
@@ -139,22 +139,22 @@ class World:
             self._core.keep(place, False)
 
     def link(self, stream: str, delay: float = 0.0, jitter: float = 0.0, loss: float = 0.0) -> None:
-        """Readings of the stream arrive `delay` seconds late and evenly up to `jitter` more, and a share
-        `loss` never. The measurements and their times stay as they are."""
+        """Readings of the stream arrive `delay` seconds late plus up to `jitter` (evenly distributed), and a share
+        `loss` never. The measurements and their stamps do not change."""
         self._core.set_link(self._core.stream(stream), delay, jitter, loss)
 
     # Images.
 
     def images(self, *streams: str, rate: float = 0.0, keep: bool = False) -> None:
-        """Wants images of these streams from the next tick on, "eye/color" or "sonar/echoes", at `rate`
-        Hz or the sensor's own (0). The first one makes a Vulkan device. keep: every one for its
-        callbacks, not the newest of each tick alone."""
+        """Asks for images of these streams from the next tick on, "eye/color" or "sonar/echoes", at `rate` Hz
+        or the sensor's own rate (0). The first call makes a Vulkan device. keep: callbacks get every
+        image, not the newest of each tick alone."""
         for stream in streams:
             self._core.want_image(self._core.stream(stream), rate, keep)
             self._senses = True
 
     def no_images(self, *streams: str) -> None:
-        """Wants no images of these streams any more."""
+        """Ends the images of these streams."""
         for stream in streams:
             self._core.drop_image(self._core.stream(stream))
         self._images = {name: image for name, image in self._images.items() if name not in streams}
@@ -166,7 +166,7 @@ class World:
         return self._core.save()
 
     def restore(self, state: bytes) -> None:
-        """Goes on from a saved state of this scene. Readings on their way are dropped; commands end."""
+        """Continues from a saved state of this scene. Readings on their way are dropped; commands end."""
         self._core.restore(state)
         self._images = {}
         for mail in self._mail.values():
@@ -174,8 +174,8 @@ class World:
 
     @contextmanager
     def record(self, path: Union[str, os.PathLike[str]]) -> Iterator[None]:
-        """Records what follows: `with world.record("out/run"): ...` leaves out/run.mcap,
-        which `neritic dive --replay` runs again and ROS 2 tools read, and out/run.csv."""
+        """Records what follows: `with world.record("out/run"): ...` writes out/run.mcap, which
+        `neritic dive --replay` repeats and ROS 2 tools read, and out/run.csv."""
         self._core.record(os.fspath(path))
         try:
             yield
@@ -183,12 +183,12 @@ class World:
             self._core.stop_recording()
 
     def inject(self, stream: str, values: ArrayLike, source: str, stamp: Optional[float] = None) -> None:
-        """Sends a sample as the device `source` does, into a stream of inputs. It acts if the scene gives
-        that source the authority. stamp: when it was measured; None: now."""
+        """Sends a sample into a stream of inputs, as the device `source` would. It acts if that source has the
+        authority. stamp: when it was measured; None: now."""
         self._core.inject(stream, np.asarray(values, np.float64).ravel(), source, stamp)
 
     def close(self) -> None:
-        """Ends the world; ends its recording."""
+        """Ends the world and its recording."""
         self._core.close()
 
     def __enter__(self) -> World:
@@ -247,8 +247,7 @@ def open(scene: Union[str, os.PathLike[str]], seed: Optional[int] = None, *, thr
          real_time: bool = False, device: str = "", validation: bool = False) -> World:
     """Opens a scene in this process.
 
-    scene: a TOML file in which something moves by physics. seed: instead of the scene's. threads: that
-    share a step. real_time: ticks wait for the clock and the scene's devices are
-    heard, else they run at once. device: of images, a part
-    of its name. validation: of Vulkan, for images."""
+    scene: a TOML file in which something moves by physics. seed: replaces the scene's. threads: their number
+    in a step. real_time: ticks wait for the clock, and the scene's devices send; else ticks run at once.
+    device: a part of the name of the Vulkan device for images. validation: checks Vulkan calls."""
     return World(_core.World(os.fspath(scene), seed, real_time, threads, device, validation))
