@@ -68,8 +68,8 @@ def main():
     part.col = np.column_stack([np.clip(c, 0, 1), np.ones(len(c))])
     col, _, nm = texture(512)
     glb = Glb("cave")
-    m_r = glb.material("rock", base=glb.texture("rock_color", col, 74), normal=glb.texture("rock_normal", nm, 64), rough=0.9, double=True)
-    glb.node("cave", glb.mesh("cave", [(box_uv(part, 1.7), m_r)]))
+    m_r = glb.material("rock", base=glb.texture("rock_color", col, 74), normal=glb.texture("rock_normal", nm, 64), normal_scale=0.45, rough=0.95, double=True)
+    glb.node("cave", glb.mesh("cave", [(box_uv(part, 2.6), m_r)]))
     glb.save(OUT / "cave.glb")
 
 

@@ -1,8 +1,5 @@
-"""A scuba diver, 1.80 m, one skinned mesh on 16 body segments, clips swim and hover.
-
-Conventions: see diver_body.py. A leg swings forward (flexes) with a positive
-rotation about x; a knee bends with a negative one; a foot points (fin in line
-with the shin) with a negative one.
+"""Scuba divers, 1.80 m, each one skinned mesh on 16 body segments, with the clips of diver_clips.py and a look of
+diver_looks.py.
 """
 from pathlib import Path
 
@@ -10,9 +7,11 @@ import numpy as np
 
 import diver_textures as T
 import sdf as S
-from diver_body import ANKLE, BOUND, GEAR, JOINTS, NAMES, WRIST, arm, body, chart_coords, chart_uv, fold, hand, rigid, skin, torso
+from diver_body import ANKLE, BOUND, GEAR, JOINTS, WRIST, arm, body, chart_coords, chart_uv, fold, hand, rigid, skin, torso
+from diver_clips import clips
 from diver_gear import gear
-from glb import Glb, qmul, quat
+from diver_looks import LOOKS
+from glb import Glb
 from mesh import join, Part
 
 OUT = Path(__file__).resolve().parents[2] / "assets" / "models"
@@ -75,59 +74,9 @@ def gloves():
     return out
 
 
-def clips(g, node):
-    """swim: 2 s flutter kick, two cycles' worth of keys looped exactly; hover: 4 s."""
-    rest = {n: np.zeros((1, 4)) + [0, 0, 0, 1] for n in NAMES}
-
-    def clip(name, seconds, keys, make, root):
-        t = np.linspace(0, seconds, keys)
-        ph = t / seconds * 2 * np.pi
-        rot = {n: np.tile(rest[n], (keys, 1)) for n in NAMES}
-        rot.update(make(ph))
-        tracks = [(node[n], "rotation", rot[n]) for n in NAMES]
-        tracks.append((node["pelvis"], "translation", root(ph)))
-        g.animation(name, t, tracks)
-
-    x = lambda deg: quat("x", deg)
-    z = lambda deg: quat("z", deg)
-
-    def swim(ph):
-        out = {
-            "thorax": qmul(x(6 + 0 * ph), quat("y", 2.5 * np.sin(ph))),
-            "abdomen": quat("y", 2 * np.sin(ph + 0.4)),
-            "pelvis": quat("y", -3 * np.sin(ph)),
-            "head": x(34 + 1.5 * np.sin(2 * ph)),
-        }
-        for s, sign in (("r", 1), ("l", -1)):
-            k = ph if s == "r" else ph + np.pi
-            out[f"upper_leg_{s}"] = qmul(z(sign * 2 + 0 * k), x(2 + 25 * np.sin(k)))
-            out[f"lower_leg_{s}"] = x(-18 - 16 * np.sin(k - 1.0))
-            out[f"foot_{s}"] = x(-62 + 20 * np.sin(k - 1.9))
-            out[f"upper_arm_{s}"] = qmul(x(-14 + 2 * np.sin(k)), z(-sign * (31 + 1.5 * np.sin(2 * ph))))
-            out[f"forearm_{s}"] = qmul(x(10 + 0 * k), z(-sign * (4 + 0 * k)))
-            out[f"hand_{s}"] = z(-sign * (4 + 0 * k))
-        return out
-
-    def hover(ph):
-        out = {"thorax": x(3 + 1.5 * np.sin(ph)), "head": x(8 + 2 * np.sin(ph + 0.8))}
-        for s, sign in (("r", 1), ("l", -1)):
-            k = ph if s == "r" else ph + np.pi
-            out[f"upper_leg_{s}"] = qmul(z(sign * 5 + 0 * k), x(22 + 7 * np.sin(k)))
-            out[f"lower_leg_{s}"] = x(-55 - 8 * np.sin(k - 0.9))
-            out[f"foot_{s}"] = x(-38 + 9 * np.sin(k - 1.7))
-            out[f"upper_arm_{s}"] = qmul(x(28 + 4 * np.sin(ph + 0.5)), z(-sign * (18 + 3 * np.sin(ph))))
-            out[f"forearm_{s}"] = qmul(x(62 + 5 * np.sin(ph + 1.0)), z(-sign * (14 + 0 * k)))
-            out[f"hand_{s}"] = x(6 * np.sin(ph + 1.6))
-        return out
-
-    still = lambda amp: (lambda ph: np.column_stack([0 * ph, amp * np.sin(2 * ph), 0 * ph]))
-    clip("swim", 2.0, 41, swim, lambda ph: np.column_stack([0 * ph, 0 * ph, 0.012 * np.sin(2 * ph)]))
-    clip("hover", 4.0, 41, hover, still(0.012))
-
-
-def main():
-    g = Glb("diver")
-    c, mr, n = T.suit()
+def make(look):
+    g = Glb(look.model)
+    c, mr, n = T.suit(look)
     m_suit = g.material(
         "wetsuit",
         base=g.texture("suit_color", c, 88),
@@ -151,7 +100,7 @@ def main():
     )
     m_met = g.material("metal", (0.80, 0.81, 0.83, 1), metal=1.0, rough=0.28)
     m_glass = g.material("glass", (0.10, 0.14, 0.16, 0.25), metal=0.0, rough=0.05, blend=True)
-    parts = gear()
+    parts = gear(look)
     mesh = g.mesh(
         "diver",
         [
@@ -172,7 +121,12 @@ def main():
     skin_id = g.skin("diver", [node[n] for n in BOUND], [places[n][1] for n in BOUND])
     g.node("diver", mesh, skin=skin_id)
     clips(g, node)
-    g.save(OUT / "diver.glb")
+    g.save(OUT / f"{look.model}.glb")
+
+
+def main():
+    for look in LOOKS:
+        make(look)
 
 
 if __name__ == "__main__":

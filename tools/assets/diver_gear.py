@@ -7,7 +7,8 @@ import numpy as np
 import noise as N
 import sdf as S
 from diver_body import BOUND, NAMES, fold, rigid, skin, torso
-from diver_trim import BLACK, DARK, ORANGE, YELLOW, belt, extras, fins, mask
+from diver_looks import YELLOW
+from diver_trim import BLACK, DARK, belt, extras, fins, mask
 from mesh import box_uv, shade
 from shapes import box, curve, cylinder, revolve, ring_band, tube
 
@@ -21,7 +22,7 @@ def worn(p):
     return p
 
 
-def bcd():
+def bcd(look):
     """Jacket: a shell over the torso, open in front, with lobes, straps and pockets."""
 
     def field(p):
@@ -60,7 +61,7 @@ def bcd():
         (np.abs(q[:, 0] - 0.112) < 0.020) * (y > 0.47) * 1.0,
     )
     lobe = N.smooth(0.075, 0.085, q[:, 0]) * (y < 0.40) * (y > 0.27) * (p.pos[:, 2] < 0.05)
-    c = N.mix(N.mix(np.tile(DARK, (len(y), 1)), BLACK, trim), ORANGE, lobe * 0.9)
+    c = N.mix(N.mix(np.tile(DARK, (len(y), 1)), BLACK, trim), look.accent, lobe * 0.9)
     p.col = np.column_stack([c, np.ones(len(c))])
     return box_uv(worn(p), 0.16)
 
@@ -70,8 +71,8 @@ def plate():
     return rigid(box_uv(shade(back).colored(BLACK), 0.16), "tank")
 
 
-def tank():
-    """12 litre cylinder on the back with boot, bands, valve and first stage."""
+def tank(look):
+    """12 litre cylinder on the back with boot, bands, valve and first stage; or two of them."""
     r, z = 0.0925, 0.262
     body = (
         revolve(
@@ -119,8 +120,12 @@ def tank():
         .rot("y", 90)
         .at(0.10, 0.690, z)
     )
-    rub = [body.tiled(0.3).colored(YELLOW), boot.tiled(0.3).colored(BLACK), knob.tiled(0.3).colored(BLACK)]
+    rub = [body.tiled(0.3).colored(look.tank), boot.tiled(0.3).colored(BLACK), knob.tiled(0.3).colored(BLACK)]
     rub += [b.tiled(0.3).colored(BLACK) for b in bands] + [b.tiled(0.3).colored(DARK) for b in buckles]
+    if look.twin:
+        manifold = cylinder(0.017, 0.21, 12).rot("y", 90).at(0, 0.676, z)
+        rub, metal = ([p.at(s * 0.104, 0, 0) for p in of for s in (-1, 1)] for of in (rub, metal))
+        metal.append(manifold)
     return [rigid(shade(p), "tank") for p in rub], [rigid(shade(p.tiled(0.3)), "tank") for p in metal]
 
 
@@ -214,12 +219,12 @@ def hoses():
     return [first, octo, low, gauge, corr, valve, dial, rigid(shade(second.tiled(0.3).colored(YELLOW)), "tank")]
 
 
-def gear():
-    rub, met = tank()
-    m_rub, m_glass, m_met = mask()
+def gear(look):
+    rub, met = tank(look)
+    m_rub, m_glass, m_met = mask(look)
     return {
-        "cloth": [bcd(), plate()],
-        "rubber": rub + m_rub + hoses() + belt() + fins() + extras(),
+        "cloth": [bcd(look), plate()],
+        "rubber": rub + m_rub + hoses() + belt() + fins(look) + extras(look),
         "metal": met + m_met,
         "glass": m_glass,
     }

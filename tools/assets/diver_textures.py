@@ -4,13 +4,13 @@ import numpy as np
 import noise as N
 from diver_body import CHARTS, MARGIN
 
-BLACK, PANEL, GREY, SKIN = (0.115, 0.12, 0.13), (0.06, 0.27, 0.44), (0.22, 0.23, 0.24), (0.72, 0.50, 0.40)
+GREY, SKIN = (0.22, 0.23, 0.24), (0.72, 0.50, 0.40)
 
 
-def suit(n=1024):
+def suit(look, n=1024):
     rng_fine = N.spectral(n, 3, 0.3, 90)
     soft = N.spectral(n, 4, 2.4, 3, 60)
-    col = N.flat(n, BLACK)
+    col = N.flat(n, look.suit)
     height = 0.00005 * rng_fine + 0.0005 * soft
     rough = np.full((n, n), 0.82)
     for name, (x, y, w, h) in CHARTS.items():
@@ -51,7 +51,7 @@ def suit(n=1024):
             pad = N.smooth(0.0, 0.03, v - 0.80)
             lines = np.maximum(edge(v - 0.80, 0.01), edge(v - 0.25, 0.01))
         c = col[box]
-        c = N.mix(c, PANEL, panel)
+        c = N.mix(c, look.panel, panel)
         c = N.mix(c, GREY, pad)
         c = N.mix(c, SKIN, face)
         c = N.mix(c, (0.36, 0.38, 0.40), np.clip(lines, 0, 1) * 0.55 * (1 - face))
@@ -69,7 +69,12 @@ def suit(n=1024):
         rough[box] = rough[box] - 0.12 * panel + 0.05 * pad - 0.25 * face
     col *= (1 + 0.05 * soft + 0.04 * rng_fine)[..., None]
     col = N.mix(col, (0.30, 0.30, 0.27), 0.05 * N.smooth(0.3, 2, N.spectral(n, 6, 1.5, 4)))
-    return np.clip(col, 0, 1), N.rough_metal(np.clip(rough + 0.03 * soft, 0.3, 1)), N.normal_map(height, 1.5)
+    images = np.clip(col, 0, 1), N.rough_metal(np.clip(rough + 0.03 * soft, 0.3, 1)), N.normal_map(height, 1.5)
+    return [image_of_half_size(i) if look.texture_px < n else i for i in images]
+
+
+def image_of_half_size(image):
+    return 0.25 * sum(image[i::2, j::2] for i in (0, 1) for j in (0, 1))
 
 
 def cloth(n=256, size=0.16):

@@ -8,11 +8,10 @@ from shapes import box, circle, curve, cylinder, revolve, ring_band, round_rect,
 
 # linear colours of the gear
 BLACK, DARK = (0.03, 0.03, 0.032), (0.06, 0.062, 0.066)
-SKIN = (0.47, 0.21, 0.135)
-ORANGE, YELLOW = (0.85, 0.22, 0.03), (0.86, 0.58, 0.03)
+SKIN, ORANGE = (0.47, 0.21, 0.135), (0.85, 0.22, 0.03)
 
 
-def mask():
+def mask(look):
     """Mask, strap, snorkel and second stage, all on the head."""
     y, rub, glass, metal = 0.782, [], [], []
     rings = []
@@ -31,7 +30,7 @@ def mask():
         bend = 0.055 * (np.abs(o[:, 0]) / 0.085) ** 2
         rings.append(np.column_stack([o[:, 0], o[:, 1] + y, z + bend]))
     frame = loft(rings, (False, False))
-    rub.append(frame.colored(BLACK))
+    rub.append(frame.colored(look.mask))
     pane = []
     for s in (-1, 1):
         o = round_rect(0.066, 0.066, 0.022, 5)
@@ -100,8 +99,9 @@ def mask():
         ],
         30,
     )
-    rub.append(tube(snork[:22], 0.0125, 10).colored(BLACK))
-    rub.append(tube(snork[21:], 0.0140, 10).colored(ORANGE))
+    if look.snorkel:
+        rub.append(tube(snork[:22], 0.0125, 10).colored(BLACK))
+        rub.append(tube(snork[21:], 0.0140, 10).colored(ORANGE))
     bound = lambda ps, name: [rigid(shade(p.tiled(0.3)), name) for p in ps]
     return bound(rub, "head") + bound(second, "regulator"), bound(glass, "head"), bound(metal, "regulator")
 
@@ -135,7 +135,7 @@ def belt():
     return [rigid(shade(p.tiled(0.3)), "pelvis") for p in parts + [buckle]]
 
 
-def fins():
+def fins(look):
     """Right fin (about 0.62 m): foot pocket, ribbed blade with rails; then its mirror."""
     x0, parts = ANKLE[0] + 0.004, []
     rings = []
@@ -168,7 +168,7 @@ def fins():
     skin_blade = loft(blade)
     tipward = N.smooth(-0.25, -0.30, skin_blade.pos[:, 2])
     skin_blade.col = np.column_stack(
-        [N.mix(np.tile(BLACK, (len(tipward), 1)), YELLOW, tipward), np.ones(len(tipward))]
+        [N.mix(np.tile(BLACK, (len(tipward), 1)), look.fins, tipward), np.ones(len(tipward))]
     )
     parts += [pocket, skin_blade] + [
         tube(r, np.linspace(0.0125, 0.0055, len(r)), 8, flat=0.8).colored(BLACK) for r in rails
@@ -191,7 +191,7 @@ def fins():
     return out
 
 
-def extras():
+def extras(look):
     """Dive computer on the left wrist, knife on the right shin."""
     at = SHOULDER + ARM * (UPPER + FORE - 0.07)
     wrist = join(
@@ -205,7 +205,7 @@ def extras():
     knife = join(
         [
             box(0.030, 0.20, 0.018, 0.007, 1).colored(BLACK),
-            box(0.024, 0.10, 0.022, 0.008, 1).at(0, 0.14, 0).colored(ORANGE),
+            box(0.024, 0.10, 0.022, 0.008, 1).at(0, 0.14, 0).colored(look.accent),
             cylinder(0.014, 0.02, 12).rot("x", 90).at(0, 0.19, 0).colored(BLACK),
         ]
     ).rot("y", 0)

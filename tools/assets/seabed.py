@@ -43,6 +43,21 @@ def height(x, z):
     )
 
 
+def tint(pos, y):
+    """Colours of the sand at pos: coarse patches, a film of algae in hollows, pale crests."""
+    big, mid, fine = (
+        N.fbm3(pos * [1, 0, 1], 21, 1 / 17, 3),
+        N.fbm3(pos * [1, 0, 1], 22, 1 / 5, 3),
+        N.fbm3(pos * [1, 0, 1], 23, 1 / 1.6, 2),
+    )
+    col = np.tile([0.90, 0.88, 0.85], (len(pos), 1))
+    col = N.mix(col, np.array([0.66, 0.62, 0.55]), N.smooth(-0.1, 0.8, big))
+    col = N.mix(col, np.array([0.62, 0.66, 0.50]), 0.65 * N.smooth(0.15, 0.75, mid + 0.3 * fine))
+    col = N.mix(col, np.array([1.0, 0.98, 0.94]), 0.7 * N.smooth(0.0, 0.5, y - 0.05 - 0.3 * big))
+    col = col * (1 + 0.06 * fine + 0.05 * mid)[:, None]
+    return np.column_stack([np.clip(col, 0, 1), np.ones(len(col))])
+
+
 def bed():
     t = np.linspace(-SIZE / 2, SIZE / 2, CELLS + 1)
     z, x = np.meshgrid(t, t, indexing="ij")
@@ -64,17 +79,7 @@ def bed():
     n = np.column_stack([-hx, np.ones(len(hx)), -hz])
     n /= np.linalg.norm(n, axis=1, keepdims=True)
     part = Part(pos, tri, pos[:, [0, 2]] / TILE, n)
-    big, mid, fine = (
-        N.fbm3(pos * [1, 0, 1], 21, 1 / 17, 3),
-        N.fbm3(pos * [1, 0, 1], 22, 1 / 5, 3),
-        N.fbm3(pos * [1, 0, 1], 23, 1 / 1.6, 2),
-    )
-    col = np.tile([0.90, 0.88, 0.85], (len(pos), 1))
-    col = N.mix(col, np.array([0.66, 0.62, 0.55]), N.smooth(-0.1, 0.8, big))
-    col = N.mix(col, np.array([0.62, 0.66, 0.50]), 0.65 * N.smooth(0.15, 0.75, mid + 0.3 * fine))
-    col = N.mix(col, np.array([1.0, 0.98, 0.94]), 0.7 * N.smooth(0.0, 0.5, y - 0.05 - 0.3 * big))
-    col = col * (1 + 0.06 * fine + 0.05 * mid)[:, None]
-    part.col = np.column_stack([np.clip(col, 0, 1), np.ones(len(col))])
+    part.col = tint(pos, y)
     return part
 
 

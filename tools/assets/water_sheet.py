@@ -138,4 +138,5 @@ def main(arguments):
     sheet(tiles, near if photos else []).save(arguments[1])
 
 
-main(sys.argv[1:])
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -79,7 +79,7 @@ def hull(n=1024, length=8.0, girth=7.0):
         N.spectral(n, 43, 2.2, 2)
         + 0.25 * N.spectral(n, 44, 0.9, 30)
         + 1.3 * N.smooth(0.30, 0.13, v) * N.smooth(0.095, 0.12, v)
-        + 1.5 * N.smooth(0.86, 0.97, v)
+        + 1.9 * N.smooth(0.56, 0.80, v)
         - 1.0,
     )
     col = N.mix(col, SILT, silt * 0.75)
