@@ -19,12 +19,12 @@ from scenario import Failed, Refused
 FORMAT = 3
 
 
-def _one(do, run, program):
+def _one(do, run, program, out=""):
     """One run. Its failure is a result, not the end of the others; Ctrl-C ends it where the worker is the main process."""
     begun, worked, folder = time.monotonic(), _processor_s(), ""
     try:
         with tempfile.TemporaryDirectory(prefix="neritic_experiment_") as folder:
-            measures, series = do(run.settings, run.seed, Tools(program, folder))
+            measures, series = do(run.settings, run.seed, Tools(program, folder, out))
         failure = measures.pop("failure", None)
     except Failed as error:
         measures, series, failure = {}, {}, str(error)
@@ -45,10 +45,10 @@ def _processor_s():
 
 
 class Tools:
-    """Things that a kind of experiment may use: the program, a folder that is removed after the run."""
+    """Things that a kind of experiment may use: the program, a folder that is removed after the run, the experiment's own."""
 
-    def __init__(self, program, folder):
-        self.program, self.folder = program, folder
+    def __init__(self, program, folder, out=""):
+        self.program, self.folder, self.out = program, folder, out
 
     def neritic(self, *arguments):
         """Runs the program; Failed with its own line if it does not end with 0."""
@@ -129,12 +129,14 @@ def run_all(scenario, out, program, workers, resume, quiet):
         files = {r.key(): r.files for r in runs}  # a file that was edited since makes its runs anew
         kept = {k: r for k, r in kept.items() if files.get(k, r["files"]) == r["files"]}
     missing = [r for r in runs if r.key() not in kept]
+    if any(getattr(scenario.kind, "alone", lambda _: False)(r.settings) for r in missing):
+        workers = 1
     # Written anew when whole, so that a line that was cut off is gone.
     _write_lines(path, [head, *kept.values()])
     progress = Progress(scenario.name, len(runs), len(runs) - len(missing), quiet)
     try:
         with open(path, "a", encoding="utf-8") as file:
-            for result in _results(scenario.kind.run, missing, program, workers):
+            for result in _results(scenario.kind.run, missing, program, workers, out):
                 kept[json.dumps([result["condition"], result["seed"]], sort_keys=True)] = result
                 file.write(json.dumps(result) + "\n")
                 file.flush()
@@ -150,13 +152,13 @@ def run_all(scenario, out, program, workers, resume, quiet):
     return [kept[r.key()] for r in runs]
 
 
-def _results(do, runs, program, workers):
+def _results(do, runs, program, workers, out):
     if workers <= 1 or len(runs) <= 1:
         for run in runs:
-            yield _one(do, run, program)
+            yield _one(do, run, program, out)
         return
     with concurrent.futures.ProcessPoolExecutor(workers, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)) as pool:
-        waiting = [pool.submit(_one, do, run, program) for run in runs]
+        waiting = [pool.submit(_one, do, run, program, out) for run in runs]
         try:
             for done in concurrent.futures.as_completed(waiting):
                 yield done.result()

@@ -12,9 +12,10 @@ import os
 import numpy as np
 
 import looking
+import shark_person
 from detector import model_of
 from rotations import matrix
-from scenario import Failed, Setting, draw
+from scenario import Failed, Refused, Setting, draw
 from shark_figures import figures, notes  # noqa: F401: of the kind
 from shark_scene import Judge, scene_of, shark_at
 from shark_senses import DIVER, Gaze, SonarTrack
@@ -43,13 +44,22 @@ SETTINGS = {
     "current_m_s": Setting(0.0, "of the water, towards east", -2.0, 2.0),
     "physics_hz": Setting(240, "steps a second", 60, 1000, whole=True),
     "control_hz": Setting(20.0, "how often the ROV is told its place", 1.0, 240.0),
-    "seconds": Setting(8.0, "of a run at most", 1.0, 120.0),
+    "seconds": Setting(8.0, "of a run at most; with a person: from when the gaze met the shark", 1.0, 120.0),
+    "person": Setting("nobody", "the diver: nobody (its eyes are on the shark at once), or a person in a window or a headset, one run after "
+                      "the other; recordings and markers in OUT/person", words=["nobody", "window", "headset"]),
+    "person_bearing_deg": Setting(90.0, "how far to the side of the shark a person faces at the start", -180.0, 180.0),
+    "gaze_within_deg": Setting(5.0, "a person's gaze meets the shark within this angle, or half a metre of its middle", 0.5, 45.0),
+    "gaze_held_s": Setting(0.15, "for so long", 0.0, 5.0),
+    "find_s": Setting(60.0, "that a person has to find the shark", 1.0, 600.0),
+    "markers": Setting(0, "the port to which the dive's markers go, as of a study ({markers}); 0: a free one", 0, 65535, whole=True),
     "from_recording": Setting(False, "true: the run is recorded, replayed by the program and judged again from the replay's log"),
 }
 MEASURES = {
     "blocked": ("yes or no", "whether the ROV blocked the shark at all"),
     "blocked_in_3_s": ("yes or no", "whether it did within 3.0 s"),
     "time_to_block_s": ("s", "of the runs that blocked"),
+    "found_s": ("s", "until a person's gaze met the shark"),
+    "person_moved_m": ("m", "how far the person's eyes were from where they began, at most"),
     "time_of_motion_s": ("s", "the same without the detector's latency and the injected delay"),
     "shark_in_sonar": ("", "share of the time after the block in which the shark is in the sonar's sight (90 x 28 degrees, 10 m)"),
     "beside_rms_m": ("m", "distance from the line over the 2 s after the block"),
@@ -62,18 +72,18 @@ MEASURES = {
 }
 
 
-def _from_recording(s, tools, record, times):
+def _from_recording(s, tools, record, seen):
     """When the shark was blocked, by the program's replay of the run's recording: at the same instants, by its log."""
     log = os.path.join(tools.folder, "replayed.csv")
     tools.neritic("dive", "--replay", record + ".mcap", "--headless", "--log", log, "--log-rate", s["physics_hz"], "-q")
     with open(log, encoding="utf-8") as file:
         rows = {round(float(r["time_s"]), 4): r for r in csv.DictReader(file) if r["vehicle"] == "rov"}
     judge = Judge()
-    for time in times:
-        row = rows.get(round(time, 4))
+    for at_s, time, shark, eyes in seen:
+        row = rows.get(round(at_s, 4))
         if row is None:
-            raise Failed(f"the replay's log has no line at {time:g} s")
-        judge.see(time, np.array([float(row["x_m"]), -float(row["z_m"]), float(row["y_m"])]), shark_at(s, time)[0])
+            raise Failed(f"the replay's log has no line at {at_s:g} s")
+        judge.see(time, np.array([float(row["x_m"]), -float(row["z_m"]), float(row["y_m"])]), shark, eyes)
     return judge.blocked_s
 
 
@@ -90,32 +100,83 @@ class _Flight:
 
     def __init__(self, s, seed, tools):
         self.s = s
-        self.world = tools.python().open(tools.write("scene.toml", scene_of(s, seed)), seed=seed)
+        scene = tools.write("scene.toml", scene_of(s, seed))
+        self.person = shark_person.Person(s, seed, tools, scene) if s["person"] != "nobody" else None
+        self.world = self.person.world if self.person else tools.python().open(scene, seed=seed)
         self.gaze = Gaze(self.world, s, seed) if s["detector"] != "assumed" else None
+        # The time of the world at which the shark was met; of a person, once the gaze has found it.
+        self.met_s, self.eyes, self.moved_m = (None if self.person else 0.0), DIVER, 0.0
         self.track = SonarTrack(self.world, s) if s["shark_known_by"] == "sonar" else None
         self.told_s = math.inf if self.gaze else _word_s(s, seed) + s["delay_s"]
         self.judge, self.in_sight, self.beside_after, self.force = Judge(), [], [], 0.0
         self.series = {"t": [], "beside": [], "along": []}
-        self.seen_at = []
+        self.seen_at, self.word_marked, self.began, self.found_s = [], False, DIVER, None
 
     def fly(self):
         s, world = self.s, self.world
-        world["diver"].pose(DIVER)
+        if self.person and not self._found():
+            return
+        if not self.person:
+            world["diver"].pose(DIVER)
         every = max(1, int(round(s["physics_hz"] / s["control_hz"])))
         # Told control_hz times a second; judged at least 20 times a second.
         part, next_told = min(every, max(1, int(round(s["physics_hz"] / 20)))), 0
-        while world.time < s["seconds"] - 1e-9:
-            time = world.time
+        while self._time() < s["seconds"] - 1e-9:
+            time = self._time()
             shark, speed = shark_at(s, time)
-            heading = math.atan2(speed[1], speed[0]) if np.hypot(*speed[:2]) > 1e-6 else math.atan2(-shark[1], -shark[0])
-            world["shark"].pose(shark, [0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2)], velocity=speed)
+            self._show(shark, speed)
             self._look(time, shark)
             if world.step >= next_told:
                 next_told = world.step + every
                 self._steer(time, shark, speed)
             world.tick(part)
+            if self.person and not self._attend():
+                raise Failed("the person's dive ended before the run")
             if self._see():
                 break
+        if self.person:
+            blocked = self.judge.blocked_s
+            self.person.mark("run ends", blocked_s=blocked, found_s=self.found_s)
+
+    def _time(self):
+        """Since the shark was met."""
+        return self.world.time - self.met_s
+
+    def _show(self, shark, speed):
+        heading = math.atan2(speed[1], speed[0]) if np.hypot(*speed[:2]) > 1e-6 else math.atan2(-shark[1], -shark[0])
+        self.world["shark"].pose(shark, [0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2)], velocity=speed)
+
+    def _attend(self):
+        """Takes where a person's eyes are; false when the dive has ended."""
+        if not self.person.look():
+            return False
+        self.eyes = self.person.eyes
+        self.moved_m = max(self.moved_m, float(np.linalg.norm(self.eyes - self.began)))
+        return True
+
+    def _found(self):
+        """Shows the shark, which stands, until the person's gaze has rested on it; whether it has in time."""
+        s, world, person = self.s, self.world, self.person
+        shark, _ = shark_at(s, 0.0)
+        self._show(shark, np.zeros(3))
+        world.tick(max(1, round(shark_person.READY_S / world.step_s)))
+        if not person.look():
+            raise Failed("the person's dive ended before the run")
+        self.began, self.found_s = person.eyes, None
+        person.mark("shark shown", seed=world.seed, shark=[round(float(x), 3) for x in shark])
+        begun = world.time
+        while world.time - begun < s["find_s"]:
+            self._show(shark, np.zeros(3))
+            world.tick(max(1, round(1 / 60 / world.step_s)))
+            if not self._attend():
+                raise Failed("the person's dive ended before the run")
+            if person.meets(shark, world.time):
+                self.met_s = world.time
+                self.found_s = world.time - begun
+                person.mark("gaze met the shark", found_s=round(self.found_s, 3))
+                return True
+        person.mark("shark not found")
+        return False
 
     def _look(self, time, shark):
         if self.gaze and not math.isfinite(self.told_s) and time >= 0.1 * self.gaze.looks - 1e-9 and self.gaze.sees_shark(shark):
@@ -126,15 +187,21 @@ class _Flight:
         if time < self.told_s - 1e-9:
             return
         at, moves = self.track.estimate(shark) if self.track else (shark, speed)
-        middle = 0.5 * (DIVER + at)
+        if self.person and not self.word_marked:
+            self.word_marked = True
+            self.person.mark("the ROV is told")
+        middle = 0.5 * (self.eyes + at)
         self.world["rov"].goto(*middle, math.atan2(at[1] - middle[1], at[0] - middle[0]), velocity=0.5 * moves)
 
     def _see(self):
         """Judges this instant; true when the run has told all it can."""
-        truth, time = self.world.truth("rov"), self.world.time
+        truth, time = self.world.truth("rov"), self._time()
         shark, _ = shark_at(self.s, time)
-        along, beside = self.judge.see(time, truth.position, shark)
-        self.seen_at.append(time)
+        before = self.judge.blocked_s
+        along, beside = self.judge.see(time, truth.position, shark, self.eyes)
+        if self.person and before is None and self.judge.blocked_s is not None:
+            self.person.mark("shark blocked", blocked_s=round(self.judge.blocked_s, 3))
+        self.seen_at.append((self.world.time, time, shark, self.eyes))
         self.force = max(self.force, float(np.abs(truth.thruster_n).max()))
         for key, value in (("t", time), ("beside", beside), ("along", along)):
             self.series[key].append(round(value, 4))
@@ -144,7 +211,10 @@ class _Flight:
         return self.judge.blocked_s is not None and time >= self.judge.blocked_s + 2.0
 
     def close(self):
-        self.world.close()
+        if self.person:
+            self.person.close()
+        else:
+            self.world.close()
         if self.gaze:
             self.gaze.close()
 
@@ -152,6 +222,12 @@ class _Flight:
         blocked_s = self.judge.blocked_s
         out = {"blocked": blocked_s is not None, "blocked_in_3_s": blocked_s is not None and blocked_s <= 3.0,
                "largest_force_n": self.force}
+        if self.person:
+            out["person_moved_m"] = self.moved_m
+            if self.met_s is None:
+                out["failure"] = "the person did not find the shark"
+                return out
+            out["found_s"] = self.found_s
         if self.gaze:
             out |= {"looks": self.gaze.looks, "wrong_words": self.gaze.wrong, "look_ms": 1e3 * float(np.median(self.gaze.work_s or [0.0]))}
         if self.track and self.track.errors:
@@ -165,14 +241,14 @@ class _Flight:
 
 def run(s, seed, tools):
     flight = _Flight(s, seed, tools)
-    record = os.path.join(tools.folder, "run")
+    record = flight.person.record if flight.person else os.path.join(tools.folder, "run")
     with contextlib.ExitStack() as recording:
         recording.callback(flight.close)
-        if s["from_recording"]:
+        if s["from_recording"] and not flight.person:
             recording.enter_context(flight.world.record(record))
         flight.fly()
     measures = flight.measures()
-    if s["from_recording"]:
+    if s["from_recording"] and flight.met_s is not None:
         measures["same_from_recording"] = _from_recording(s, tools, record, flight.seen_at) == flight.judge.blocked_s
     return measures, flight.series
 
@@ -190,5 +266,15 @@ def files(settings):
 
 
 def check(settings):
-    """Refuses a detector that is not there, before anything runs."""
+    """Refuses a detector that is not there, before anything runs; and what a person cannot have."""
     files(settings)
+    if settings["person"] == "nobody":
+        return
+    if settings["detector"] != "assumed":
+        raise Refused(f"person = {settings['person']}: found detector {settings['detector']!r}; accepted: assumed, since a person's own "
+                      "gaze says when the shark is seen")
+
+
+def alone(settings):
+    """Whether runs must come one after the other: a person has one pair of eyes."""
+    return settings["person"] != "nobody"

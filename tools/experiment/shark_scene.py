@@ -4,6 +4,7 @@ import os
 
 import numpy as np
 
+import shark_person
 from scenario import SHIPPED
 from shark_senses import CROP_DEG, DIVER, SEEN, SONAR
 
@@ -14,13 +15,7 @@ seed = {seed}
 rate_hz = {physics_hz}
 {current}
 {seen}
-[[objects]]
-name = "diver"
-class = "diver"
-shape = "sphere"
-radius_m = 0.05
-position_m = [0, -10, 0]
-inputs = {{ pose = {{ from = "python", hold_s = 3600 }} }}
+{diver}
 [[objects]]
 name = "shark"
 class = "shark"
@@ -36,6 +31,15 @@ position_m = {rov}
 yaw_deg = {yaw!r}
 mission = {{ hold = "station" }}
 {sonar}"""
+
+
+DRAWN = """[[objects]]
+name = "diver"
+class = "diver"
+shape = "sphere"
+radius_m = 0.05
+position_m = [0, -10, 0]
+inputs = { pose = { from = "python", hold_s = 3600 } }"""
 
 
 def _scene_of_enu(p):
@@ -72,9 +76,9 @@ class Judge:
     def __init__(self):
         self.held_from, self.blocked_s = None, None
 
-    def see(self, time, rov, shark):
+    def see(self, time, rov, shark, diver=DIVER):
         """(along, beside) at this instant."""
-        along, beside = between(rov, DIVER, shark)
+        along, beside = between(rov, diver, shark)
         if beside <= BESIDE_M and LEAST <= along <= MOST:
             self.held_from = time if self.held_from is None else self.held_from
             if self.blocked_s is None and time - self.held_from >= HELD_S - 1e-9:
@@ -91,13 +95,14 @@ def scene_of(s, seed):
     across = np.array([math.cos(bearing) * math.cos(about), -math.sin(bearing) * math.cos(about), math.sin(about)])
     rov = 0.5 * (DIVER + shark) + s["offset_m"] * across
     file = "bluerov2_heavy_survey_dynamics.toml" if s["navigation"] == "measured" else "bluerov2_heavy_dynamics.toml"
-    looks, sounds = s["detector"] != "assumed", s["shark_known_by"] == "sonar"
+    looks, sounds, person = s["detector"] != "assumed", s["shark_known_by"] == "sonar", s["person"] != "nobody"
     models = os.path.join(SHIPPED, "..", "models")
     return SCENE.format(
         seed=seed, physics_hz=s["physics_hz"], shark=_scene_of_enu(shark), rov=_scene_of_enu(rov), navigation=s["navigation"],
         current=f'[current]\nkind = "uniform"\nvelocity_m_s = [{s["current_m_s"]!r}, 0, 0]' if s["current_m_s"] else "",
+        diver=shark_person.diver_of(s) if person else DRAWN,
         seen=SEEN.format(fov=CROP_DEG, **s) if looks else "", sonar=SONAR.format(**s) if sounds else "",
-        shark_drawn=f'model = "{models}/shark.glb"\nclip = "swim"' if looks or sounds else 'shape = "sphere"',
-        rov_drawn=f'model = "{models}/rov.glb"' if looks else 'shape = "box"\nsize_m = [0.457, 0.254, 0.575]',
+        shark_drawn=f'model = "{models}/shark.glb"\nclip = "swim"' if looks or sounds or person else 'shape = "sphere"',
+        rov_drawn=f'model = "{models}/rov.glb"' if looks or person else 'shape = "box"\nsize_m = [0.457, 0.254, 0.575]',
         vehicle=os.path.join(SHIPPED, "..", "vehicles", file),
         yaw=-(s["shark_bearing_deg"] + s["heading_deg"]))  # a scene's yaw is to port from north; a bearing is to starboard
