@@ -65,8 +65,11 @@ def main():
     c = N.mix(c, np.array([0.72, 0.46, 0.36]), 0.5 * N.smooth(0.0, 0.5, N.fbm3(part.pos, 37, 1.7, 3)) * (0.3 + 0.7 * light))
     c = N.mix(c, np.array([0.52, 0.58, 0.36]), 0.6 * light * N.smooth(-0.2, 0.5, g))
     c = N.mix(c, np.array([1.0, 0.93, 0.80]), 0.85 * up)
+    hollow = N.fbm3(part.pos, 3, 0.55, 3) * 0.42 + 0.20 * np.abs(N.fbm3(part.pos, 8, 1.3, 3))
+    c = c * (1 - 0.55 * N.smooth(0.12, -0.28, hollow))[:, None]  # what stands back has dark films and no growth
     part.col = np.column_stack([np.clip(c, 0, 1), np.ones(len(c))])
     col, _, nm = texture(512)
+    col = N.mix(col, col.mean((0, 1)), 0.5)  # worn by surge: less crust than on rocks outside
     glb = Glb("cave")
     m_r = glb.material("rock", base=glb.texture("rock_color", col, 74), normal=glb.texture("rock_normal", nm, 64), normal_scale=0.45, rough=0.95, double=True)
     glb.node("cave", glb.mesh("cave", [(box_uv(part, 2.6), m_r)]))
