@@ -1,9 +1,12 @@
-// The step of a diver, and what is drawn of it (human_world.hpp).
+// The step of a diver: what the groups of inputs make of it, limbs, contacts, dive computer
+// (human_world.hpp).
 #include <algorithm>
 #include <cmath>
 
 #include "diver/frames.hpp"
+#include "diver/reach.hpp"
 #include "engine/sim/motion.hpp"
+#include "testbed/samples/riding.hpp"
 #include "testbed/simulation/human_world.hpp"
 
 namespace neritic::testbed {
@@ -49,7 +52,6 @@ std::optional<double> since_sample_s(std::uint64_t step, double dt_s) {
   const double since_s = static_cast<double>(step + 1) * dt_s - last * diver::kComputerSample_s;
   return since_s > 1e-9 ? since_s : 0.0;
 }
-
 }  // namespace
 
 double through_water_m_s(double over_ground_m_s, const Vec3& way_ned, const Vec3& current_ned_m_s) {
@@ -68,6 +70,139 @@ diver::SwimGoal swim_goal(const PhysicsHuman& human, const HumanPhysics& state) 
                                              state.human.held.current_ned_m_s);
   // One whom the current carries along still steers.
   return {to, std::clamp(speed_m_s, kSteerage_m_s, kMostSwim_m_s)};
+}
+
+namespace {
+
+// Body axes of a diver, from a pose in the world of something in a standing person's axes.
+Quat body_from_tracked(const diver::HumanState& state, const Pose& tracked) {
+  return glm::normalize(glm::conjugate(state.root.attitude) *
+                        diver::ned_from_standing(tracked.rotation));
+}
+Vec3 place_in_body(const diver::HumanState& state, const Pose& tracked) {
+  return glm::conjugate(state.root.attitude) *
+         (diver::ned_from_world(tracked.position_m) - state.root.position_ned_m);
+}
+
+// In the world, of a pose that rides with the body or is there already.
+Pose world_from(const diver::HumanState& state, const Pose& pose, bool rides) {
+  return rides ? diver::standing_pose(state.root.position_ned_m, state.root.attitude) * pose : pose;
+}
+
+// Head and hands go where they are tracked; a suit's wrists are joints already.
+void follow_tracking(const PhysicsHuman& human, const DiverInputs& inputs, bool head, bool hands,
+                     const diver::HumanState& state, diver::JointRotations& joints) {
+  diver::ReachTargets targets;
+  if (head) {
+    const Pose tracked =
+        world_from(state, inputs.head.world_from_head, inputs.head.placed & kHeadRides);
+    targets.head = body_from_tracked(state, tracked);
+    if (inputs.head.placed & kHeadPlaced) targets.eyes_m = place_in_body(state, tracked);
+  }
+  if (hands && inputs.hands_by_pose == 0) {
+    joints[diver::joint_of(diver::kLeftHand)] = inputs.hands.wrist[0];
+    joints[diver::joint_of(diver::kRightHand)] = inputs.hands.wrist[1];
+  } else if (hands) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      if ((inputs.hand_poses.tracked >> i & 1) == 0) continue;
+      const Pose tracked = world_from(state, inputs.hand_poses.world_from_hand[i],
+                                      inputs.hand_poses.tracked & kHandsRide);
+      targets.hands[i] = {place_in_body(state, tracked), body_from_tracked(state, tracked)};
+    }
+  }
+  joints = diver::reach(human.body, joints, targets);
+}
+
+diver::GazeState gaze_ned(const Gaze& gaze) {
+  diver::GazeState state = gaze.state;
+  state.direction = ned_from_world(state.direction);
+  state.fixation = ned_from_world(state.fixation);
+  return state;
+}
+
+// The swimmer, a recording, or the limbs' posture as it is.
+void move_body(const PhysicsHuman& human, const DiverInputs& inputs, Authority authority,
+               double now_s, double dt_s, const Ability& able, HumanPhysics& state,
+               diver::HumanInputs& acting) {
+  if (authority == Authority::kLive) {
+    acting.joints = inputs.body.joints;
+    acting.other_power_w = inputs.body.other_power_w;
+  } else if (authority == Authority::kRecording && human.recording) {
+    acting.joints = human.recording->at(now_s, human.repeat);
+  } else if (authority == Authority::kNobody) {
+    acting.joints = state.human.held.joints;
+  } else if (!able.conscious) {
+    state.swimmer = {};  // limp: limbs straight, no button, breath by itself
+  } else {
+    diver::SwimGoal goal = swim_goal(human, state);
+    goal.speed_m_s *= able.strength;
+    diver::swim(human.body, human.file.swimmer, goal, state.human, state.swimmer, dt_s, acting);
+  }
+}
+
+}  // namespace
+
+diver::HumanInputs acting_inputs(const PhysicsHuman& human, const DiverInputs& inputs,
+                                 std::uint64_t step, double dt_s, const Ability& able,
+                                 HumanPhysics& state) {
+  for (std::size_t i = 0; i < kDiverGroups; ++i)
+    state.groups[i] = next_group(state.groups[i], inputs.control[i], step, dt_s);
+  const auto authority = [&](DiverGroup group) {
+    return acting(inputs.of(group), state.groups[static_cast<std::size_t>(group)].phase);
+  };
+  const auto live = [&](DiverGroup group) { return authority(group) == Authority::kLive; };
+  const double now_s = static_cast<double>(step) * dt_s;
+  const Quat straight(1.0, 0.0, 0.0, 0.0);
+
+  diver::HumanInputs out;
+  move_body(human, inputs, authority(DiverGroup::kBody), now_s, dt_s, able, state, out);
+  out.other_power_w += diver::work_of_heat_w(able.shiver_w);
+  const bool hands = live(DiverGroup::kHands), head = live(DiverGroup::kHead);
+  if (authority(DiverGroup::kHands) == Authority::kNobody)
+    for (const diver::Segment hand : {diver::kLeftHand, diver::kRightHand})
+      out.joints[diver::joint_of(hand)] = straight;
+  if (authority(DiverGroup::kHead) == Authority::kNobody)
+    out.joints[diver::joint_of(diver::kHead)] = straight;
+  if (hands || head) follow_tracking(human, inputs, head, hands, state.human, out.joints);
+
+  if (able.hand_to_m && able.conscious && !hands &&
+      authority(DiverGroup::kHands) == Authority::kAutopilot) {
+    // As the arm lies, but the wrist there.
+    const diver::Posture posture = diver::posture_of(human.body, out.joints, {});
+    diver::ReachTargets targets;
+    targets.hands[1] = diver::body_from_hand(posture, true);
+    targets.hands[1]->position_m = place_in_body(state.human, {*able.hand_to_m, {}});
+    out.joints = diver::reach(human.body, out.joints, targets);
+  }
+
+  const Authority buttons = authority(DiverGroup::kButtons);
+  if (buttons == Authority::kLive)
+    out.buttons = inputs.buttons.pressed;
+  else if (buttons == Authority::kRecording && human.buttons)
+    out.buttons = human.buttons->at(now_s).value_or(out.buttons);
+  else if (buttons == Authority::kNobody)
+    out.buttons = 0;
+
+  if (live(DiverGroup::kBreath)) {
+    out.ventilation_l_min = inputs.breath.ventilation_l_min;
+    out.breath_bias_m3 = inputs.breath.bias_m3;
+    out.hold_breath = inputs.breath.hold;
+    out.instruments.breath = inputs.breath.monitor;
+  } else if (authority(DiverGroup::kBreath) == Authority::kNobody) {
+    out.breath_bias_m3 = 0.0;
+  }
+  if (able.holds_breath) out.hold_breath = 1;
+  if (live(DiverGroup::kHeart)) out.instruments.heart = inputs.heart.state;
+  if (live(DiverGroup::kGaze)) out.instruments.gaze = gaze_ned(inputs.gaze);
+
+  const Authority gas = authority(DiverGroup::kGas);
+  if (gas == Authority::kLive)
+    out.tank = inputs.gas.tank;
+  else if (gas == Authority::kNobody)
+    out.tank = state.human.held.tank;
+  else if (human.file.gas_switching.by_plan)
+    out.tank = state.tank;
+  return out;
 }
 
 HumanStep free_human(const PhysicsHuman& human, const DiverInputs& inputs,
@@ -148,42 +283,6 @@ void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const H
   state.tank = diver::step_gas_switch(switching, human.computer->settings().gases, human.body,
                                       state.human.life.tanks, computer, tank, depth_m, sink_m_s,
                                       diver::kComputerSample_s, state.gas_switch);
-}
-
-Pose drawn_pose(const HumanPhysics& state) {
-  return diver::standing_pose(state.human.root.position_ned_m, state.human.root.attitude);
-}
-
-scene::NodeMotion::Key drawn_joints(const PhysicsHuman& human, const HumanPhysics& state,
-                                    double time_s) {
-  const auto joints = diver::standing_joints(state.human.limbs.rotation, human.arms_spread_rad);
-  scene::NodeMotion::Key key{time_s, {Quat(1.0, 0.0, 0.0, 0.0)}, {}};
-  for (const Quat& joint : joints) key.rotations.push_back(joint);
-  key.scales.assign(diver::kSegments, Vec3(1.0));
-  key.scales[diver::kPelvis] = Vec3(human.scale);
-  // A breath of a litre makes the chest some 2.5 % wider and 5 % deeper (Konno and Mead 1967, J.
-  // Appl. Physiol. 22, 407), the belly likewise; what hangs on the chest keeps its size.
-  const double litres = 1e3 * (state.human.life.lungs.volume_m3 - human.body.lungs.rest_m3);
-  const Vec3 wider(1.0 + 0.025 * litres, 1.0, 1.0 + 0.05 * litres);
-  key.scales[diver::kAbdomen] = wider;
-  for (const diver::Segment on_chest : {diver::kHead, diver::kLeftUpperArm, diver::kRightUpperArm})
-    key.scales[on_chest] = 1.0 / wider;
-  for (const Vec3& gear : human.gear_scales) {
-    key.rotations.push_back(Quat(1.0, 0.0, 0.0, 0.0));
-    key.scales.push_back(gear);
-  }
-  return key;
-}
-
-scene::NodeMotion::Key drawn_joints(const DrawnJoints& drawn, const LimbState& state,
-                                    double time_s) {
-  scene::NodeMotion::Key key{time_s, {}, {}};
-  if (state.shown == 0) return key;
-  key.rotations.push_back(Quat(1.0, 0.0, 0.0, 0.0));
-  for (const Quat& joint : diver::standing_joints(state.joints, drawn.arms_spread_rad))
-    key.rotations.push_back(joint);
-  key.scales.assign(diver::kSegments, Vec3(1.0));
-  return key;
 }
 
 }  // namespace neritic::testbed

@@ -1,5 +1,6 @@
 #include "testbed/simulation/object_motion.hpp"
 
+#include "diver/frames.hpp"
 #include "rov/frames.hpp"
 #include "testbed/simulation/human_world.hpp"
 
@@ -52,6 +53,42 @@ std::optional<scene::MotionAt> StateMotion::at(std::size_t object, double) const
     if (const auto motion = motion_of(state_.objects()[static_cast<std::size_t>(i)]))
       return scene::MotionAt{*motion};
   return std::nullopt;
+}
+
+Pose drawn_pose(const HumanPhysics& state) {
+  return diver::standing_pose(state.human.root.position_ned_m, state.human.root.attitude);
+}
+
+scene::NodeMotion::Key drawn_joints(const PhysicsHuman& human, const HumanPhysics& state,
+                                    double time_s) {
+  const auto joints = diver::standing_joints(state.human.limbs.rotation, human.arms_spread_rad);
+  scene::NodeMotion::Key key{time_s, {Quat(1.0, 0.0, 0.0, 0.0)}, {}};
+  for (const Quat& joint : joints) key.rotations.push_back(joint);
+  key.scales.assign(diver::kSegments, Vec3(1.0));
+  key.scales[diver::kPelvis] = Vec3(human.scale);
+  // A breath of a litre makes the chest some 2.5 % wider and 5 % deeper (Konno and Mead 1967, J.
+  // Appl. Physiol. 22, 407), the belly likewise; what hangs on the chest keeps its size.
+  const double litres = 1e3 * (state.human.life.lungs.volume_m3 - human.body.lungs.rest_m3);
+  const Vec3 wider(1.0 + 0.025 * litres, 1.0, 1.0 + 0.05 * litres);
+  key.scales[diver::kAbdomen] = wider;
+  for (const diver::Segment on_chest : {diver::kHead, diver::kLeftUpperArm, diver::kRightUpperArm})
+    key.scales[on_chest] = 1.0 / wider;
+  for (const Vec3& gear : human.gear_scales) {
+    key.rotations.push_back(Quat(1.0, 0.0, 0.0, 0.0));
+    key.scales.push_back(gear);
+  }
+  return key;
+}
+
+scene::NodeMotion::Key drawn_joints(const DrawnJoints& drawn, const LimbState& state,
+                                    double time_s) {
+  scene::NodeMotion::Key key{time_s, {}, {}};
+  if (state.shown == 0) return key;
+  key.rotations.push_back(Quat(1.0, 0.0, 0.0, 0.0));
+  for (const Quat& joint : diver::standing_joints(state.joints, drawn.arms_spread_rad))
+    key.rotations.push_back(joint);
+  key.scales.assign(diver::kSegments, Vec3(1.0));
+  return key;
 }
 
 }  // namespace neritic::testbed
