@@ -153,7 +153,7 @@ Result<Pin<SonarState>> SonarSensor::state_of(gpu::Device& device, scene::Sonar 
   state.mirrors = sonar::mirrors_of(sonar);
   if (!state.mirrors.empty() && !device.features().shaderClipDistance)
     return failure(ErrorCode::kUnsupported,
-                   "ghosts: {} has no shaderClipDistance, which a mirror's view is cut by",
+                   "ghosts: {} has no shaderClipDistance, which cuts a mirror's view",
                    device.info().name);
   NERITIC_TRY(std::vector<sonar::Head> heads, sonar::plan_heads(sonar));
   for (sonar::Head& head : heads) {

@@ -80,7 +80,7 @@ Result<Remote::Reply> Remote::call(json map, const std::vector<net::Bytes>& arra
   std::vector<net::Bytes> frames{packed};
   frames.insert(frames.end(), arrays.begin(), arrays.end());
   if (!parts.socket->send(frames))
-    return failure(ErrorCode::kIo, "{}: too much waits to be sent", parts.where);
+    return failure(ErrorCode::kIo, "{}: too much data waits to be sent", parts.where);
   const TimeNs until = now_ns() + static_cast<TimeNs>((parts.patience_s + lasts_s) * 1e9);
   for (;;) {
     const TimeNs left = until - now_ns();

@@ -53,7 +53,7 @@ Status World::want_image(std::uint32_t stream, double rate_hz, bool keep) {
 Status World::drop_image(std::uint32_t stream) {
   Parts& parts = *parts_;
   if (parts.wished.erase(stream) == 0)
-    return refusal("images", "no wish for it", "a stream of want_image()");
+    return refusal("images", "a stream that is not wanted", "one of want_image()");
   return parts.renew_consumer();
 }
 

@@ -72,7 +72,7 @@ TEST_F(DivePhysics, InterruptedItWritesWhatItHas) {
     EXPECT_EQ(WEXITSTATUS(raw), 130) << err;
     const std::string before = "neritic: interrupted after ";
     ASSERT_EQ(err.rfind(before, 0), 0u) << err;
-    EXPECT_NE(err.find(" s of 600; all until then is written\n"), std::string::npos) << err;
+    EXPECT_NE(err.find(" s of 600; everything up to then is written\n"), std::string::npos) << err;
     EXPECT_EQ(std::count(err.begin(), err.end(), '\n'), 1) << err;
     EXPECT_NE(out.find("hash "), std::string::npos) << out;
     // Every control period until then has its row.

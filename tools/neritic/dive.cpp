@@ -372,8 +372,8 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
         fmt::format("Frames of {}, {}", session->scene().title, screen.device->info().name),
         frame_budget_ms(flags, screen), view->timeline()));
   if (loop.interrupted())
-    return failure(ErrorCode::kInterrupted, "interrupted after {:.4g} s; all until then is written",
-                   loop.wall_s());
+    return failure(ErrorCode::kInterrupted,
+                   "interrupted after {:.4g} s; everything up to then is written", loop.wall_s());
   if (screen.headset && !screen.headset->validation_messages().empty())
     return failure(ErrorCode::kInternal, "OpenXR validation: {}",
                    screen.headset->validation_messages().front());

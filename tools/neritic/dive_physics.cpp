@@ -80,8 +80,7 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,
   std::unique_ptr<Devices> devices;
   if (live) {
     if (!flags.realtime)
-      log_warn("{}: its devices send by the clock on the wall; --realtime runs by it too",
-               flags.scene);
+      log_warn("{}: its devices send in real time; only --realtime listens to them", flags.scene);
     NERITIC_TRY(devices,
                 Devices::open(scene, world, physics->inbox(), DeviceSource::Pace::kThread));
     for (SampleSource* source : devices->sources()) sources.push_back(source);
@@ -112,7 +111,8 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,
   NERITIC_TRY_STATUS(status);
   if (loop.interrupted())
     return failure(ErrorCode::kInterrupted, "interrupted after {:.4g} s of {:g}{}",
-                   physics->newest().time_s, seconds, replay ? "" : "; all until then is written");
+                   physics->newest().time_s, seconds,
+                   replay ? "" : "; everything up to then is written");
   return replay ? Status() : check_finished(flags, *physics);
 }
 

@@ -53,8 +53,7 @@ Status try_device(gpu::Device& device) {
   }));
   for (const std::uint32_t value : buffer.mapped<const std::uint32_t>())
     if (value != kPattern)
-      return failure(ErrorCode::kDeviceLost, "{} does not write what it is told",
-                     device.info().name);
+      return failure(ErrorCode::kDeviceLost, "{} writes wrong values", device.info().name);
   return {};
 }
 

@@ -334,7 +334,7 @@ Result<std::string> export_recording(const RecordingFlags& flags) {
               recording::read_mcap(*source, flags.file, visitor, recording::AfterDamage::kGoOn));
   NERITIC_TRY_STATUS(visitor.finish());
   if (!report.whole)
-    log_warn("{}: {}; what reads is exported", flags.file,
+    log_warn("{}: {}; the readable part is exported", flags.file,
              report.damages > 0 ? report.damage.front() : "cut off: it has no end");
   if (visitor.topics() == 0)
     return refusal(flags.file, fmt::format("no topic that can be a .{}", flags.format),

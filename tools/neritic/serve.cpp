@@ -42,8 +42,7 @@ Status run_serve(const ServeFlags& flags) {
                                                           .validation = flags.validation}));
   const std::uint64_t first_step = world->step();
   if (world->leaves_devices())
-    log_warn("{}: its devices send by the clock on the wall: they are heard with --realtime alone",
-             flags.scene);
+    log_warn("{}: its devices send in real time; only --realtime listens to them", flags.scene);
   if (!flags.record.empty()) NERITIC_TRY_STATUS(world->record(flags.record));
   HandOff hand_off;
   NERITIC_TRY(const auto server,

@@ -59,7 +59,7 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   app.set_version_flag("--version", std::string(program_version()));
   app.add_flag("-v,--verbose", line.verbose,
                "also prints on stderr what is loaded, chosen and compiled");
-  app.add_flag("-q,--quiet", line.quiet, "no notes, and no summary of a dive but --json");
+  app.add_flag("-q,--quiet", line.quiet, "no notes, and no summary of a dive except --json");
   add_render(app, line.run);
   add_sonar(app, line.run);
   add_dive(app, line);

@@ -30,21 +30,21 @@ void add_plan(CLI::App& app, Run& run) {
   command
       ->add_option("--level", flags->levels,
                    "DEPTH,MIN: a further level: its depth, and the run time at which the diver "
-                   "leaves it; repeat for more")
+                   "leaves it; may be repeated")
       ->expected(1)
       ->take_all();
   command
       ->add_option("--after", flags->after,
                    "DEPTH,MIN,INTERVAL[,GAS]: an earlier dive and the surface interval after it, "
-                   "minutes; repeat for more, oldest first")
+                   "minutes; may be repeated, oldest first")
       ->expected(1)
       ->take_all();
   command->add_option("--gf", flags->gf, "gradient factors low/high, percent")
       ->capture_default_str();
   command
-      ->add_option(
-          "--convention", flags->convention,
-          "stop-minutes, run-minutes or msw: rules in which planners differ (diver/README.md)")
+      ->add_option("--convention", flags->convention,
+                   "stop-minutes, run-minutes or msw: named sets of rules in which planners differ "
+                   "(diver/README.md)")
       ->capture_default_str();
   command->add_option("--table", flags->table,
                       "ZH-L16 coefficients b or c (default: the convention's, b of stop-minutes)");
@@ -57,7 +57,7 @@ void add_plan(CLI::App& app, Run& run) {
   command->add_option("--ascent-rate", flags->ascent_m_min, "m/min");
   command->add_option("--descent-rate", flags->descent_m_min, "m/min");
   command->add_option("--saturation", flags->saturation,
-                      "speed of gas uptake and release, percent of the model's: 110/90");
+                      "speed of gas uptake and release, percent of the model's, such as 110/90");
   command
       ->add_option("--rmv,--sac", flags->rmv,
                    "breathing, litres per minute at ambient pressure: at the bottom, and from the "
@@ -78,16 +78,17 @@ void add_plan(CLI::App& app, Run& run) {
                       "instead of a plan: replays the depths of a dive (.csv: time_s, depth_m, "
                       "optionally gas) on the dive computer");
   command->add_option("--vehicle", flags->vehicle,
-                      "with --log: the participant whose rows are used, by the column vehicle");
+                      "with --log: uses the rows of this participant (column vehicle)");
   command->add_flag("--depths-up", flags->depths_up,
-                    "with --log: its depths are negative below the surface");
-  command->add_option("--plot", flags->plot, "file of the picture (.png)")->check(png_file);
+                    "with --log: depths are negative below the surface");
+  command->add_option("--plot", flags->plot, "writes the picture to this file (.png)")
+      ->check(png_file);
   command
       ->add_option(
           "--out", flags->out,
           "folder for plan.json and plan.png, or log.csv and log.png, and the picture's data")
       ->check(named);
-  command->add_flag("--json", flags->json, "JSON on standard output, for programs");
+  command->add_flag("--json", flags->json, "prints JSON on standard output");
   command->callback([flags, &run] { run = [flags] { return run_plan(*flags); }; });
 }
 
@@ -111,8 +112,7 @@ void add_physio(CLI::App& app, Run& run) {
       ->add_option("--estimator", flags->estimator,
                    "breath: multiband, autocorrelation or spectrum (the published method)")
       ->capture_default_str();
-  command->add_option("--window", flags->window_s,
-                      "breath: seconds of sound that an estimate uses");
+  command->add_option("--window", flags->window_s, "breath: seconds of sound for one estimate");
   command->add_option("--reference", flags->reference_bpm,
                       "breath: the true rate, breaths a minute, to compare with (default: from a "
                       "file name such as ..._12bpm_...)");
@@ -123,43 +123,45 @@ void add_physio(CLI::App& app, Run& run) {
                       "gaze: ivt (30 deg/s; the default) or idt (1 deg, 100 ms)");
   command->add_flag("--headset", flags->headset,
                     "gaze: idt with 250 ms, for the slow sampling of headsets");
-  command->add_option("--intrinsics", flags->intrinsics,
-                      "gaze: fx,fy,cx,cy of a camera at the eye; adds each fixation in its pixels");
+  command->add_option(
+      "--intrinsics", flags->intrinsics,
+      "gaze: fx,fy,cx,cy of a camera at the eye; adds each fixation's place in its pixels");
   command->add_option("--out", flags->out, "folder for the table and the JSON");
-  command->add_option("--plot", flags->plot, "file of the picture (.png)")->check(png_file);
+  command->add_option("--plot", flags->plot, "writes the picture to this file (.png)")
+      ->check(png_file);
   command->add_flag("--table", flags->table,
-                    "each beat, estimate or eye movement on standard output too (.csv)");
-  command->add_flag("--json", flags->json, "JSON on standard output instead of the summary");
+                    "prints each beat, estimate or eye movement on standard output, too (.csv)");
+  command->add_flag("--json", flags->json, "prints JSON on standard output instead of the summary");
   command->callback([flags, &run] { run = [flags] { return run_physio(*flags); }; });
 }
 
 void add_hud(CLI::App& app, Run& run) {
   auto flags = std::make_shared<HudFlags>();
-  CLI::App* command = app.add_subcommand(
-      "hud",
-      "shows a diver's instruments over any other OpenXR program (XR_EXTX_overlay), from a dive "
-      "that was recorded or runs elsewhere");
+  CLI::App* command =
+      app.add_subcommand("hud",
+                         "shows a diver's instruments over any other OpenXR program "
+                         "(XR_EXTX_overlay), from a recorded or a running dive");
   command->add_option("scene", flags->scene,
-                      "scene (.toml) of the dive, where it is not the recording's own");
+                      "scene (.toml) of the dive, if it is not the recorded one");
   auto* from = command->add_option_group("where the numbers come from");
   from->add_option("--replay", flags->replay,
-                   "a recording (dive --record), at the pace of the dive");
+                   "a recording (dive --record), shown at the pace of the dive");
   from->add_option("--connect", flags->connect,
-                   "a dive that runs (serve, dive --serve): tcp://ADDRESS:PORT");
+                   "a running dive (serve, dive --serve): tcp://ADDRESS:PORT");
   from->require_option(1);
   command->add_option("--key", flags->key,
-                      "with --connect: NAME.secret of `neritic keys`, for a server with keys");
+                      "with --connect to a server with keys: NAME.secret of `neritic keys`");
   command->add_option("--server-key", flags->server_key,
-                      "server.public, where it is not beside NAME.secret");
+                      "server.public, if it is not beside NAME.secret");
   command->add_option("--hud", flags->layouts,
-                      "any of mask (default), corner, wrist, console, with commas between");
+                      "any of mask (default), corner, wrist, console, separated by commas");
   command->add_option("--diver", flags->diver, "whose instruments (default: the first diver)");
   command->add_option("--units", flags->units, "metric (default), imperial")
       ->check(CLI::IsMember({"metric", "imperial"}));
-  command->add_option("--frames", flags->frames, "stop after so many frames that are seen")
+  command->add_option("--frames", flags->frames, "stops after this number of visible frames")
       ->check(between(1, 1000000));
   command->add_flag("--validate", flags->validation,
-                    "fail if Vulkan's validation layer says anything");
+                    "runs with Vulkan validation; any message is a failure");
   command->footer(
       "Examples: neritic hud --replay dive.mcap --hud mask,wrist\n"
       "          neritic hud --connect tcp://192.168.1.20:47910 --key ada.secret");

@@ -11,30 +11,32 @@ namespace neritic::tools {
 void add_serve(CLI::App& app, CommandLine& line) {
   auto flags = std::make_shared<ServeFlags>();
   CLI::App* command = app.add_subcommand(
-      "serve", "a scene for clients: Python's neritic.connect, other machines (neritic keys)");
+      "serve",
+      "runs a scene for clients: Python's neritic.connect, also on other machines (neritic keys)");
   command->add_option("scene", flags->scene, "scene file")->required();
   command
       ->add_option("--bind", flags->bind,
-                   "where it listens: tcp://ADDRESS:PORT; beyond 127.x.x.x with --keys")
+                   "address to listen at: tcp://ADDRESS:PORT; beyond 127.x.x.x with --keys")
       ->capture_default_str();
-  command->add_option("--keys", flags->keys, "folder of keys: others are not heard (neritic keys)");
-  CLI::Option* real_time = command->add_flag("--realtime", flags->real_time,
-                                             "goes on by itself, at the host's pace; nobody ticks");
+  command->add_option("--keys", flags->keys,
+                      "folder of keys: only clients with a key of it may connect (neritic keys)");
+  CLI::Option* real_time =
+      command->add_flag("--realtime", flags->real_time,
+                        "runs by itself, at the pace of the clock; clients need not tick");
   command
-      ->add_flag("--lockstep", flags->lock_step,
-                 "goes on when a client ticks, as far as it says (the default)")
+      ->add_flag("--lockstep", flags->lock_step, "runs only as far as a client ticks (the default)")
       ->excludes(real_time);
-  command->add_option("--clients", flags->clients, "most clients at a time")
+  command->add_option("--clients", flags->clients, "largest number of clients at a time")
       ->capture_default_str()
       ->check(between(1u, 4096u));
-  command->add_option("--seconds", flags->seconds, "ends after so much simulated time")
+  command->add_option("--seconds", flags->seconds, "ends after this simulated time")
       ->check(between(1e-3, 1e9));
-  command->add_option("--seed", flags->seed, "instead of the scene's")->check(seed_number);
+  command->add_option("--seed", flags->seed, "seed instead of the scene's")->check(seed_number);
   command->add_option("--record", flags->record, "records the whole run, for dive --replay");
   command->add_option("--recordings", flags->recordings,
                       "folder in which clients may record; without it they may not");
   command->add_flag("--no-shared-memory", flags->no_shared_memory,
-                    "arrays as frames, also for clients on this machine");
+                    "sends arrays as frames, also to clients on this machine");
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
   command->add_flag("--validation", flags->validation, "checks every Vulkan call; slow");
   command->callback([flags, &line] {
@@ -47,58 +49,59 @@ void add_keys(CLI::App& app, Run& run) {
   auto flags = std::make_shared<KeysFlags>();
   CLI::App* command =
       app.add_subcommand("keys", "makes the keys of a server and of its clients (CURVE)");
-  command->add_option("folder", flags->folder, "folder of keys; what is there stays")
+  command->add_option("folder", flags->folder, "folder of keys; keys that are there stay")
       ->required()
       ->check(named);
-  command->add_option("--client", flags->client,
-                      "a client that may connect; goes with its secret to its machine");
+  command->add_option(
+      "--client", flags->client,
+      "makes the keys of a client that may connect; copy its secret to its machine");
   command->callback([flags, &run] { run = [flags] { return run_keys(*flags); }; });
 }
 
 void add_simulate(CLI::App& app, CommandLine& line) {
   auto flags = std::make_shared<SimulateFlags>();
-  CLI::App* command = app.add_subcommand("simulate",
-                                         "sends the bytes of a lab's devices: those of a scene's "
-                                         "[sources], worn by a person who swims "
-                                         "by himself, or recordings (docs/devices.md)");
+  CLI::App* command =
+      app.add_subcommand("simulate",
+                         "sends what a lab's devices send: those of a scene's [sources], on a "
+                         "simulated swimmer, or recordings (docs/devices.md)");
   command
-      ->add_option(
-          "what", flags->what,
-          "suit, strap, jacket, microphone or a source's name, one or more: sends to a "
-          "dive that runs elsewhere. lab: a dive and all of its devices in simulated "
-          "time. flood: a dive under --rate packets a second. latency: from a suit's packet to "
-          "the picture that shows it")
+      ->add_option("what", flags->what,
+                   "suit, strap, jacket, microphone or a source's name, one or more: sends to a "
+                   "dive that runs elsewhere. lab: a dive with all of its devices in simulated "
+                   "time. flood: a dive that gets --rate packets a second. latency: measures the "
+                   "time from a suit's packet to the picture that shows it")
       ->required();
   command->add_option("--scene", flags->scene, "scene with [sources]")->capture_default_str();
   command->add_option("--to", flags->to,
-                      "IPv4 address of the machine that listens, else as the "
-                      "scene says");
+                      "IPv4 address of the machine that listens (default: as the scene says)");
   command->add_option("--seconds", flags->seconds,
-                      "how long: devices until Ctrl-C, lab and flood 60");
-  command->add_option("--delay-ms", flags->delay_ms, "of every packet");
-  command->add_option("--jitter-ms", flags->jitter_ms,
-                      "evenly up to this much more, so that packets overtake one another");
-  command->add_option("--loss", flags->loss, "percent of packets");
-  command->add_option("--repeat", flags->repeat, "percent that come twice");
-  command->add_option("--cut", flags->cut, "percent that are cut short");
-  command->add_option("--corrupt", flags->corrupt, "percent with a wrong bit");
-  command->add_option("--garbage", flags->garbage, "percent that are random bytes");
-  command->add_option("--seed", flags->seed, "of faults, clocks and noise")->check(seed_number);
+                      "duration (default: devices until Ctrl-C, lab and flood 60)");
+  command->add_option("--delay-ms", flags->delay_ms, "delay of every packet");
+  command->add_option(
+      "--jitter-ms", flags->jitter_ms,
+      "additional delay, evenly distributed up to this, so that packets overtake one another");
+  command->add_option("--loss", flags->loss, "percent of packets that are lost");
+  command->add_option("--repeat", flags->repeat, "percent of packets that come twice");
+  command->add_option("--cut", flags->cut, "percent of packets that are cut short");
+  command->add_option("--corrupt", flags->corrupt, "percent of packets with a wrong bit");
+  command->add_option("--garbage", flags->garbage, "percent of packets that are random bytes");
+  command->add_option("--seed", flags->seed, "seed of faults, clocks and noise")
+      ->check(seed_number);
   command->add_option("--limbs", flags->limbs, "suit: joint angles (.csv, as swim.motion)");
   command->add_option("--buttons", flags->buttons, "jacket: presses (.csv, as jacket_buttons)");
   command->add_option("--ecg", flags->ecg, "strap: a recording in uV (.csv, .wav, .hea)");
   command->add_option("--sound", flags->sound, "microphone: a recording (.wav)");
-  command->add_option("--suit-hz", flags->suit_hz, "frames a second")->capture_default_str();
-  command->add_flag("--no-gloves", flags->no_gloves, "the suit without fingers");
+  command->add_option("--suit-hz", flags->suit_hz, "suit: frames a second")->capture_default_str();
+  command->add_flag("--no-gloves", flags->no_gloves, "suit: without fingers");
   command->add_option("--rate", flags->rate_hz, "flood: packets a second")->capture_default_str();
   command->add_option("--picture-hz", flags->picture_hz,
-                      "latency: pictures a second, else the first camera's rate");
+                      "latency: pictures a second (default: the first camera's rate)");
   command->add_option("--size", flags->size, "latency: WxH of the pictures [320x180]");
   command->add_option("--device", flags->device,
                       "latency: Vulkan device: index or part of its name");
   command->add_option("--record", flags->files.record,
-                      "lab: every sample and state (neritic dive --replay)");
-  command->add_option("--log", flags->files.log, "lab: the dive as a .csv");
+                      "lab: records every sample and state (neritic dive --replay)");
+  command->add_option("--log", flags->files.log, "lab: the log of the dive as a .csv");
   command->add_flag("--json", flags->json,
                     "lab, flood, latency: JSON on standard output, for programs");
   command->callback([flags, &line] {
@@ -119,14 +122,15 @@ void add_register(CLI::App& app, Run& run) {
                    "three alone")
       ->required();
   command->add_flag("--headset", flags->headset,
-                    "measures the lab's side: hold the headset still at each place in turn, the "
-                    "same way round, for 2 s (docs/headsets.md)");
+                    "measures the lab's side: hold the headset still at each place in turn for 2 "
+                    "s, always turned the same way (docs/headsets.md)");
   command
       ->add_option("--lab-up", flags->lab_up, "the lab's vertical axis: y (headsets) or z (suits)")
       ->check(CLI::IsMember({"y", "z"}))
       ->capture_default_str();
-  command->add_flag("--tilted", flags->tilted, "the lab's vertical is not the scene's: any turn");
-  command->add_flag("--json", flags->json, "JSON on standard output, for programs");
+  command->add_flag("--tilted", flags->tilted,
+                    "the lab's vertical axis may be tilted against the scene's");
+  command->add_flag("--json", flags->json, "prints JSON on standard output");
   command->footer("Example: neritic register marks.csv >> scene.toml");
   command->callback(
       [flags, &run] { run = [flags] { return nothing_to_say(run_register(*flags)); }; });
@@ -149,12 +153,13 @@ void add_experiment(CLI::App& app, CommandLine& line) {
   command->add_option("--runs", flags->runs, "runs of each condition, in place of the scenario's");
   command->add_option("--seed", flags->seed, "seed of the first run, in place of the scenario's")
       ->check(seed_number);
-  command->add_option(
-      "--set", flags->set,
-      "KEY=VALUE: a setting in place of the scenario's; a list [A, B] makes conditions");
-  command->add_option("--workers", flags->workers, "runs at once; 0: as many as cores");
-  command->add_flag("--resume", flags->resume, "keeps the finished runs that --out has");
-  command->add_flag("--json", flags->json, "JSON on standard output, for programs");
+  command->add_option("--set", flags->set,
+                      "KEY=VALUE: a setting in place of the scenario's; a list [A, B] makes "
+                      "conditions; may be repeated");
+  command->add_option("--workers", flags->workers,
+                      "number of runs at the same time; 0: as many as cores");
+  command->add_flag("--resume", flags->resume, "keeps the finished runs that are in --out");
+  command->add_flag("--json", flags->json, "prints JSON on standard output");
   command->footer("Example: neritic experiment echo_sounder --out out/echo --set slope_deg=[0,8]");
   command->callback([flags, &line] {
     flags->quiet = line.quiet;
@@ -171,16 +176,16 @@ void add_study(CLI::App& app, CommandLine& line) {
   command->footer(
       "neritic study begin FOLDER --plan FILE.toml   a new study\n"
       "neritic study enrol FOLDER                    consent; gives a pseudonym and an order\n"
-      "neritic study run FOLDER P01                  the blocks that P01 has yet to do\n"
+      "neritic study run FOLDER P01                  the blocks that P01 has not done yet\n"
       "neritic study ask FOLDER P01 nasa_tlx         one questionnaire (nasa_tlx, ssq, presence, "
       "trust)\n"
       "neritic study mark FOLDER P01 TEXT            a marker at this moment\n"
-      "neritic study withdraw FOLDER P01             erases what P01 left, and nothing else\n"
+      "neritic study withdraw FOLDER P01             erases the data of P01 alone\n"
       "neritic study table FOLDER                    the scores of run's questionnaires, by "
       "pseudonym\n"
       "neritic study wizard FOLDER P01               a console that flies the robot of a served "
       "dive\n"
-      "tools/experiment/STUDIES.md says the rest");
+      "More: tools/experiment/STUDIES.md");
   command->callback([command, &line] {
     line.run = [words = command->remaining()] { return nothing_to_say(run_study(words)); };
   });
@@ -189,23 +194,24 @@ void add_study(CLI::App& app, CommandLine& line) {
 void add_recording(CLI::App& app, Run& run) {
   auto flags = std::make_shared<RecordingFlags>();
   CLI::App* command = app.add_subcommand(
-      "recording", "looks into a recording of a dive (.mcap), mends it, exports what it holds");
+      "recording", "inspects, repairs and exports a recording of a dive (.mcap)");
   command
-      ->add_option("what", flags->what,
-                   "info: what it holds; check: whether it is whole; repair: what reads of a "
-                   "damaged one as a whole one; export: its messages in other forms")
+      ->add_option(
+          "what", flags->what,
+          "info: prints the content; check: tests whether it is whole; repair: writes the readable "
+          "part of a damaged one as a whole one; export: writes its messages in other forms")
       ->required();
   command->add_option("file", flags->file, "the recording")->required();
   command->add_option("--out", flags->out, "repair: the new file; export: a folder")->check(named);
   command
       ->add_option("--format", flags->format,
-                   "export: csv (default) and npy, a file a topic; xdf, one of all numbers, for "
-                   "physiology; wav of sound; png of cameras and sonars")
+                   "export: csv (default) and npy: a file a topic; xdf: one file of all numbers, "
+                   "for physiology; wav: sound; png: images of cameras and sonars")
       ->check(CLI::IsMember({"csv", "npy", "xdf", "wav", "png"}));
-  command->add_option("--topic", flags->topics, "export: only this topic; may be given again")
+  command->add_option("--topic", flags->topics, "export: only this topic; may be repeated")
       ->expected(1)
       ->take_all();
-  command->add_flag("--json", flags->json, "info: JSON on standard output, for programs");
+  command->add_flag("--json", flags->json, "info: prints JSON on standard output");
   command->footer("Example: neritic recording export dive.mcap --out tables --topic /rov/imu");
   command->callback([flags, &run] { run = [flags] { return run_recording(*flags); }; });
 }
@@ -215,7 +221,7 @@ void add_doctor(CLI::App& app, Run& run) {
   CLI::App* command =
       app.add_subcommand("doctor", "reports what this machine has and which commands work on it");
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
-  command->add_flag("--json", flags->json, "JSON on standard output, for programs");
+  command->add_flag("--json", flags->json, "prints JSON on standard output");
   command->callback(
       [flags, &run] { run = [flags] { return nothing_to_say(run_doctor(*flags)); }; });
 }

@@ -12,31 +12,30 @@ namespace neritic::tools {
 void add_render(CLI::App& app, Run& run) {
   auto flags = std::make_shared<RenderFlags>();
   CLI::App* command = app.add_subcommand(
-      "render", "offscreen pictures and sensor data of a scene (.toml) or a model (.gltf, .glb)");
+      "render",
+      "renders pictures and sensor data of a scene (.toml) or a model (.gltf, .glb), offscreen");
   command->add_option("scene", flags->scene,
-                      "scene or model file; with --replay the recording's own if none is given");
+                      "scene or model file; with --replay the recorded scene if none is given");
   command
-      ->add_option(
-          "--out", flags->out,
-          "folder for the results: in OUT/frame_0000 a folder a sensor with pictures (.png), "
-          "arrays (.npy) and facts (.json); in OUT/track what sonars accumulate over frames")
+      ->add_option("--out", flags->out,
+                   "folder for the results: OUT/frame_0000/SENSOR has pictures (.png), arrays "
+                   "(.npy) and facts (.json), OUT/track what sonars accumulate over frames")
       ->required()
       ->check(named);
   command
-      ->add_option("--frames", flags->frames,
-                   "number of frames (1; with --replay as many as it lasts), apart by the rate_hz "
-                   "of the first camera, else of the first "
-                   "sonar; of the quickest sensor with --own-rates")
+      ->add_option(
+          "--frames", flags->frames,
+          "number of frames (default: 1; with --replay as many as it lasts), at the rate_hz of the "
+          "first camera, else of the first sonar; with --own-rates of the fastest sensor")
       ->check(between(1, 1000000));
   command->add_option("--size", flags->size, "WxH of every camera, pixels");
   command->add_option(
       "--time", flags->time_s,
-      "scene time of the first frame, seconds (a day at most where vehicles fly there)");
-  command->add_option(
-      "--clip", flags->clip,
-      "of a model: this animation, by name or number from 0 (else the first); --time "
-      "is its time, which begins anew at its end");
-  command->add_option("--sensor", flags->sensors, "only this sensor, by name; may be given again")
+      "scene time of the first frame, seconds (at most a day in scenes with physics)");
+  command->add_option("--clip", flags->clip,
+                      "of a model: its animation, by name or number from 0 (default: the first); "
+                      "it repeats, and --time is its time");
+  command->add_option("--sensor", flags->sensors, "only this sensor, by name; may be repeated")
       ->expected(1)
       ->take_all();
   command
@@ -53,7 +52,7 @@ void add_render(CLI::App& app, Run& run) {
   command
       ->add_option(
           "--compress", flags->compress,
-          "of arrays: npz (lossless, numpy.load reads it), or png (16 bits a channel: labels, "
+          "form of arrays: npz (lossless; numpy.load reads it), or png (16 bits a channel: labels, "
           "instances, depth in mm up to 65.534 m, normals as colours; others .npz)")
       ->check(CLI::IsMember({"npz", "png"}));
   command->add_option(
@@ -65,151 +64,151 @@ void add_render(CLI::App& app, Run& run) {
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
   command->add_option(
       "--dump-graph", flags->dump_graph,
-      "the frame graph's plan: to a file (.dot: Graphviz), or - for standard output");
+      "writes the frame graph's plan to a file (.dot: Graphviz), or to standard output (-)");
   command
       ->add_option("--chart-cell", flags->chart_cell_m,
-                   "metres a cell of charts that profiling sonars sound")
+                   "metres a cell of the charts of profiling sonars")
       ->check(between(0.001, 1000.0));
   add_quality(*command, flags->quality);
   command->add_flag("--track-only", flags->track_only,
                     "no frame folders: only what sonars accumulate over the frames (OUT/track)");
   command->add_flag(
       "--own-rates", flags->own_rates,
-      "each sensor only in the frames in which its rate_hz makes it due (else all in each)");
+      "each sensor only in the frames in which its rate_hz makes it due (default: in all)");
   command->add_option("--log", flags->files.log,
-                      "where vehicles or divers move by physics: their dive as a .csv");
+                      "the log of vehicles and divers that move by physics, as a .csv");
   command->add_option("--log-rate", flags->files.log_rate_hz,
-                      "its rows a second, else one a control period");
+                      "rows a second of the log (default: one a control period)");
   command
-      ->add_option("--seed", flags->seed,
-                   "of the sensors' noise, instead of the scene's; what is scattered stays")
+      ->add_option(
+          "--seed", flags->seed,
+          "seed of the sensors' noise, instead of the scene's; scattered objects keep their places")
       ->check(seed_number);
   command
       ->add_option("--runs", flags->runs,
-                   "so many times, with the seeds from --seed on, into OUT/run_0000 and on; where "
-                   "missions end, a table of outcomes")
+                   "number of runs, with the seeds from --seed on, into OUT/run_0000 and on; a "
+                   "table of outcomes if missions end")
       ->check(between(1, 100000));
   command->add_flag(
       "--sheet", flags->sheet,
-      "also pictures of what each sensor sees and of the first camera's depth, normals, "
-      "labels and motion (OUT/sheet), and all on one (OUT/sheet.png)");
+      "also pictures of what each sensor sees and of the first camera's depth, normals, labels and "
+      "motion (OUT/sheet), and all of them on one sheet (OUT/sheet.png)");
   command->add_flag("--validate", flags->validation,
-                    "run with Vulkan validation; any message is a failure");
+                    "runs with Vulkan validation; any message is a failure");
   command->callback([flags, &run] { run = [flags] { return run_render(*flags); }; });
 }
 
 void add_dive(CLI::App& app, CommandLine& line) {
   auto flags = std::make_shared<DiveFlags>();
-  CLI::App* command = app.add_subcommand(
-      "dive",
-      "the live program: a scene (.toml) or a model (.gltf, .glb) in a headset or a window; F1 "
-      "lists keys");
+  CLI::App* command = app.add_subcommand("dive",
+                                         "shows a scene (.toml) or a model (.gltf, .glb) live, in "
+                                         "a headset or a window; F1 lists the keys");
   command->add_option("scene", flags->scene,
-                      "scene or model file; with --replay the recording's own if none is given");
+                      "scene or model file; with --replay the recorded scene if none is given");
   command->add_flag(
       "--headless", flags->headless,
-      "no window. Where vehicles move by physics and no flag asks for pictures: their "
-      "dive alone, as fast as it can; else frames at the camera's rate, then a "
-      "summary of their times");
+      "no window. In scenes with physics, if no flag asks for pictures: the dive alone, as fast as "
+      "possible; else frames at the camera's rate, then a summary of their times");
   command
-      ->add_option(
-          "--display", flags->display,
-          "openxr: a headset; window; auto: the headset if an OpenXR runtime has one, else "
-          "a window")
+      ->add_option("--display", flags->display,
+                   "openxr: a headset; window: a window; auto: a headset if an OpenXR runtime has "
+                   "one, else a window")
       ->check(CLI::IsMember({"auto", "openxr", "window"}));
   command->add_option("--bindings", flags->bindings,
                       "your own controls of some actions, a .toml (docs/headsets.md)");
   command->add_option("--refresh", flags->refresh_hz, "pictures a second of the headset")
       ->check(CLI::Range(1.0, 1000.0));
-  command->add_option("--log", flags->files.log,
-                      "the vehicles' dive as a .csv, a row a control period");
-  command->add_option("--log-rate", flags->files.log_rate_hz, "rows a second instead");
+  command->add_option("--log", flags->files.log, "the log of vehicles and divers as a .csv");
+  command->add_option(
+      "--log-rate", flags->files.log_rate_hz,
+      "rows a second of the log (default: one a control period of vehicles, ten of divers)");
   command
       ->add_option("--plot", flags->files.plot,
-                   "the dive as a .png, its data beside as .plot.json; tools/setup plots installs "
-                   "what draws")
+                   "a picture of the dive (.png), with its data as .plot.json; it needs matplotlib "
+                   "(tools/setup plots)")
       ->check(png_file);
-  command->add_option(
-      "--record", flags->files.record,
-      "every sample in and out, state hashes and the scene, as an .mcap that --replay "
-      "and ROS 2 tools read (neritic recording --help); F.xdf: beside F.mcap all numbers for "
-      "physiology labs");
+  command->add_option("--record", flags->files.record,
+                      "records every sample in and out, state hashes and the scene as an .mcap, "
+                      "which --replay and ROS 2 tools read (neritic recording --help); F.xdf: also "
+                      "F.mcap; the .xdf has all numbers for physiology labs");
   command
       ->add_option("--record-images", flags->record_images,
                    "with --record: also these images, such as rov_camera/color or rov_sonar/echoes "
-                   "(depth, normals, labels, instances, motion); may be given again. Without it "
-                   "`render --replay` makes them later")
+                   "(depth, normals, labels, instances, motion); may be repeated. `render "
+                   "--replay` can make them later instead")
       ->expected(1)
       ->take_all();
   command->add_option("--play", flags->play,
-                      "sends the samples of a recorded dive as live ones: they drive the groups of "
-                      "inputs that name their devices");
+                      "sends the samples of a recorded dive as live ones, to the groups of inputs "
+                      "that name their devices");
   add_replay(*command, flags->replay, flags->shown, flags->added);
   command->add_option(
       "--water", flags->water,
       fmt::format("with --replay: another Jerlov type: {}", join(scene::kWaterTypes)));
-  command->add_option("--save", flags->files.save, "the state at the end, for --restore");
+  command->add_option("--save", flags->files.save, "file for the state at the end, for --restore");
   command->add_option("--restore", flags->restore,
-                      "goes on from a saved state of the same scene, --seconds more");
+                      "continues from a saved state of the same scene, for --seconds more");
   command
-      ->add_option("--seed", flags->seed,
-                   "of the sensors' noise, instead of the scene's; what is scattered stays")
+      ->add_option(
+          "--seed", flags->seed,
+          "seed of the sensors' noise, instead of the scene's; scattered objects keep their places")
       ->check(seed_number);
   command
       ->add_option("--runs", flags->runs,
-                   "with --headless: so many dives, with the seeds from --seed on, until their "
+                   "with --headless: number of dives, with the seeds from --seed on, until their "
                    "missions are done; a table of outcomes")
       ->check(between(1, 100000));
   command->add_option("--serve", flags->serve,
                       "lets other programs read and command this dive (neritic serve, hud "
                       "--connect): tcp://ADDRESS:PORT; beyond 127.x.x.x with --keys");
   command->add_option("--keys", flags->keys, "with --serve: folder of keys (neritic keys)");
-  command->add_option(
-      "--markers", flags->markers,
-      "lines of text that come by UDP to this port (neritic study sends them) go into "
-      "the recording, as /markers, and to Lab Streaming Layer");
-  command->add_flag("--realtime", flags->realtime, "physics without pictures at the clock's pace");
-  command->add_flag("--json", flags->json, "the dive's summary as JSON");
-  command->add_flag("--fast", flags->fast, "with --headless: frames as fast as they come");
-  command->add_flag("--panels", flags->panels, "with --headless: draw the window's panels too");
+  command->add_option("--markers", flags->markers,
+                      "UDP port for lines of text (neritic study sends them), which go into the "
+                      "recording, as /markers, and to Lab Streaming Layer");
+  command->add_flag("--realtime", flags->realtime,
+                    "physics without pictures, at the pace of the clock");
+  command->add_flag("--json", flags->json, "prints the dive's summary as JSON");
+  command->add_flag("--fast", flags->fast, "with --headless: frames as fast as possible");
+  command->add_flag("--panels", flags->panels, "with --headless: draws the window's panels too");
   command
-      ->add_option(
-          "--timeline", flags->timeline,
-          "the frames' phases, passes and resolution as a .png, its data beside as .plot.json")
+      ->add_option("--timeline", flags->timeline,
+                   "a picture (.png) of the frames' phases, passes and resolution, with its data "
+                   "as .plot.json")
       ->check(png_file);
   command->add_option(
       "--hud", flags->hud,
       "a diver's instruments over the view: none, or any of corner, mask, wrist, "
       "console (default of a scene with divers: corner in a window, wrist in a headset; key H)");
   command->add_option("--diver", flags->diver, "whose instruments (default: the first diver)");
-  command->add_option("--units", flags->units, "of the instruments: metric (default), imperial")
+  command
+      ->add_option("--units", flags->units, "units of the instruments: metric (default), imperial")
       ->check(CLI::IsMember({"metric", "imperial"}));
   command
       ->add_option("--quality", flags->quality,
-                   "auto: resolution, then shadows, occlusion, waves and scatter, then sonars' "
-                   "rates, in turn, come down where the machine is too slow for its screen, on a "
-                   "CPU for 20 pictures a second (default in a window); full")
+                   "auto: if the machine is too slow for its screen (a CPU: for 20 pictures a "
+                   "second), lowers resolution, then shadows, occlusion, waves and scatter, then "
+                   "sonars' rates (default in a window); full: never")
       ->check(CLI::IsMember({"auto", "full"}));
-  command->add_option(
-      "--seconds", flags->seconds,
-      "stop after so many simulated seconds (default with --headless: 60 of physics "
-      "alone, 5 of frames); exit status 1 if a mission is not finished though they were enough for "
-      "its way at its speed, and nothing is saved to go on from");
-  command->add_option("--frames", flags->frames, "stop after so many frames")
+  command->add_option("--seconds", flags->seconds,
+                      "stops after this simulated time (default with --headless: 60 of physics "
+                      "alone, 5 of frames). Exit status 1 if a mission is not finished in a time "
+                      "that suffices for its way at its speed, and --save is not given");
+  command->add_option("--frames", flags->frames, "stops after this number of frames")
       ->check(between(1, 1000000));
-  command->add_option("--screenshot", flags->screenshot, "write the last frame to this .png")
+  command->add_option("--screenshot", flags->screenshot, "writes the last frame to this .png")
       ->check(png_file);
   command->add_option("--size", flags->size, "WxH of the window or the picture, pixels");
   command
       ->add_option("--sensor", flags->sensors,
-                   "begin at this camera, show only this sonar, by name; may be given again")
+                   "begins at this camera, shows only this sonar, by name; may be repeated")
       ->expected(1)
       ->take_all();
-  command->add_option("--view", flags->view,
-                      "begin here: a camera's name, chase:PARTICIPANT or free (V goes on)");
+  command->add_option(
+      "--view", flags->view,
+      "begins at this view: a camera's name, chase:PARTICIPANT or free (key V changes it)");
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
   command->add_flag("--validate", flags->validation,
-                    "run with Vulkan validation; any message is a failure");
+                    "runs with Vulkan validation; any message is a failure");
   // The flags of all commands are read by then.
   command->callback([flags, &line] {
     flags->quiet = line.quiet;

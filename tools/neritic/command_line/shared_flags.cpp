@@ -27,26 +27,24 @@ std::string seed_number(const std::string& text) {
 
 void add_quality(CLI::App& command, std::string& quality) {
   command
-      .add_option("--quality", quality,
-                  "how finely sonars are sampled: under 5, 2 or 1 % of error (sonar/TRADE.md)")
+      .add_option(
+          "--quality", quality,
+          "how finely sonars are sampled: with less than 5, 2 or 1 % of error (sonar/TRADE.md)")
       ->check(CLI::IsMember({"draft", "standard", "reference"}));
 }
 
 void add_replay(CLI::App& command, std::string& replay, std::string& shown,
                 std::vector<std::string>& added) {
-  command.add_option(
-      "--replay", replay,
-      "a recorded dive (.mcap): its motion again, each state's hash compared; without SCENE in the "
-      "scene that was recorded");
+  command.add_option("--replay", replay,
+                     "repeats the motion of a recorded dive (.mcap) and compares each state's "
+                     "hash; without SCENE in the recorded scene");
   command.add_option(
       "--scene", shown,
-      "with --replay: shows the motion in this scene, whose objects of the same names "
-      "move so");
+      "with --replay: shows the motion in this scene, by its objects of the same names");
   command
-      .add_option(
-          "--add", added,
-          "merges a .toml over the scene that is shown, as if it included it: other cameras, "
-          "sonars, lights; may be given again")
+      .add_option("--add", added,
+                  "merges a .toml over the shown scene, as if it included that: other cameras, "
+                  "sonars, lights; may be repeated")
       ->expected(1)
       ->take_all();
 }

@@ -145,10 +145,9 @@ void add_tradeoff(CLI::App& app, Run& run) {
       ->check(named);
   command
       ->add_option("scene,--scene", flags->scene,
-                   "sonar: the scene whose first sonar gives the place; none: only scenes with a "
-                   "closed-form answer; xr: whose first camera is the head (dive.toml); camera: "
-                   "whose first camera it is (wreck.toml); network: "
-                   "one with [sources] (lab.toml)")
+                   "scene. sonar: its first sonar gives the place (none: only scenes with a "
+                   "closed-form answer); xr: its first camera is the head (dive.toml); camera: its "
+                   "first camera is measured (wreck.toml); network: it has [sources] (lab.toml)")
       ->capture_default_str();
   command->add_option(
       "--kind", flags->kind,
