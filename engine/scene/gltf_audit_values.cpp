@@ -59,7 +59,7 @@ class ValueAudit {
       if (!drawn[i] && bytes_read < kMaxIdlePictureBytes) bytes_read += check_picture(image);
     });
     if (bytes_read >= kMaxIdlePictureBytes)
-      report_.note("images: some that nothing uses were not checked");
+      report_.note("images: not all that nothing is drawn with were looked at");
   }
 
   // A picture that nothing is drawn with. Returns the bytes that were read.
