@@ -236,6 +236,7 @@ ModelPose evaluate_pose(const Model& model, const NodeMotion& motion, double tim
     LocalPose& local = locals[static_cast<std::size_t>(motion.nodes[i])];
     local.rotation = key.rotations[i];
     local.scale = key.scales[i];
+    if (!key.places_m.empty()) local.translation_m = key.places_m[i];
   }
   pose.model_from_node = matrices_of(model, locals);
   return pose;

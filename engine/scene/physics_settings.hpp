@@ -107,12 +107,32 @@ struct Wash {
   double reach_m = 10.0;
 };
 
+// A vehicle's tether with weight, drag and sag, from a top in the world or on an object
+// (rov/cable.hpp). That top is where the object stands as which the tether is drawn.
+struct Tether {
+  std::size_t object = 0;  // index into Scene::objects
+  Vec3 attachment_m{0.0};  // on the vehicle, its own axes
+  double length_m = 50.0;  // paid out at the start
+  std::uint32_t segments = 16;
+  double diameter_m = 0.0076, net_weight_n_m = 0.0;
+  double stiffness_n = 2e4, damping_n_s = 200.0;
+  double normal_drag = 1.2, tangential_drag = 0.01, friction = 0.3;
+  // Pays out and takes in to keep a tension at the top.
+  struct Winch {
+    double hold_n = 20.0, speed_m_s = 0.5, least_m = 1.0, most_m = 100.0;
+  };
+  std::optional<Winch> winch;
+};
+// As many joints of a drawn tether lie on a segment.
+inline constexpr std::uint32_t kTetherJoints = 4;
+
 // Settings of an object that is a vehicle with its own physics.
 struct Dynamics {
   std::filesystem::path file;          // its parameters
   std::optional<Mission> mission;      // absent: nobody steers
   std::uint64_t failed_thrusters = 0;  // bit i: the file's thruster i + 1
   std::optional<Vec3> tether_anchor_m;
+  std::optional<Tether> tether;  // beside a file without one
   std::optional<Grip> gripper;
   std::optional<Wash> wash;  // absent: thrusters move no water but by their force
   // The state that control and guidance use: the vehicle's own sensors, or its true state.

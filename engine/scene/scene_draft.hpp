@@ -42,14 +42,14 @@ struct Look {
 
 // The model that an object draws. Two requests with the same identity() are the same model.
 struct ModelRequest {
-  enum class Kind { kFile, kShape, kTerrain };
+  enum class Kind { kFile, kShape, kTerrain, kTether };
   Kind kind = Kind::kFile;
   std::filesystem::path file;  // of kFile and kTerrain
   std::string node;            // of kFile; empty: the whole scene of the file
   std::string shape;           // of kShape
   double radius_m = 0.5, height_m = 1.0;
   Vec3 size_m{1.0};
-  int segments = 48;
+  int segments = 48;  // of a tether: its joints
   bool inside_out = false;
   HeightfieldOptions heights;
   Look look;  // of kShape and kTerrain
@@ -137,6 +137,14 @@ std::vector<InputChoice> read_inputs(TableReader& reader, KeyList groups, KeyLis
 // scene_read_condition.cpp: the tables condition and regulator of a diver, where they are there.
 std::optional<Condition> read_condition(TableReader& reader);
 std::optional<Regulator> read_regulator(TableReader& reader);
+// scene_read_tether.cpp: the table tether of the vehicle of that name, where it is there, and the
+// object as which it is drawn, whose placement is the tether's top.
+struct TetherDraft {
+  std::optional<ObjectDraft> object;
+  ModelRequest request;
+};
+std::optional<Tether> read_tether(TableReader& reader, const std::string& vehicle,
+                                  TetherDraft& drawn);
 // scene_read_carry.cpp: the tables thing, gripper, hands, wash, where they are there.
 std::optional<Wash> read_wash(TableReader& reader);
 std::optional<Thing> read_thing(TableReader& reader);

@@ -91,6 +91,7 @@ inline constexpr auto kObjectKeys = std::to_array<Key>({"name",
                                                         "mission",
                                                         "failed_thrusters",
                                                         "tether_anchor_m",
+                                                        "tether",
                                                         "navigation",
                                                         "human",
                                                         "swim",
@@ -130,6 +131,10 @@ inline constexpr auto kOrbitKeys =
 inline constexpr auto kFollowKeys = std::to_array<Key>({"object", "offset_m"});
 inline constexpr auto kSwimKeys = std::to_array<Key>(
     {"waypoints_m", "speed_m_s", "speed_over", "acceptance_m", "repeat", "motion"});
+inline constexpr auto kTetherKeys = std::to_array<Key>(
+    {"from_m", "from", "attachment_m", "length_m", "segments", "diameter_m", "net_weight_n_m",
+     "stiffness_n", "damping_n_s", "normal_drag", "tangential_drag", "friction", "color", "winch"});
+inline constexpr auto kWinchKeys = std::to_array<Key>({"hold_n", "speed_m_s", "least_m", "most_m"});
 inline constexpr auto kWashKeys = std::to_array<Key>({"diameter_m", "reach_m"});
 inline constexpr auto kThingKeys =
     std::to_array<Key>({"mass_kg", "volume_l", "drag_area_m2", "racked"});

@@ -67,6 +67,8 @@ void add_terrain_tangents(Model& model) {
 
 Model make_shape(const ModelRequest& request) {
   if (request.shape == "box") return make_box(request.size_m);
+  if (request.kind == ModelRequest::Kind::kTether)
+    return make_tube(request.segments, request.radius_m, request.height_m);
   if (request.shape == "plane") return make_plane(request.size_m.x, request.size_m.z);
   if (request.shape == "cylinder")
     return make_cylinder(request.radius_m, request.height_m, request.segments);

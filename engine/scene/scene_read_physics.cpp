@@ -17,25 +17,12 @@ constexpr Interval kAnySeconds{-1e9, 1e9, false, false, "seconds"};
 // The most thrusters that a vehicle can have.
 constexpr std::size_t kMaxFailedThruster = 16;
 
-constexpr Key kPhysicsOnly[] = {"collision",
-                                "dynamics",
-                                "mission",
-                                "failed_thrusters",
-                                "tether_anchor_m",
-                                "navigation",
-                                "human",
-                                "swim",
-                                "jacket_buttons",
-                                "inputs",
-                                "modem",
-                                "condition",
-                                "regulator",
-                                "thing",
-                                "gripper",
-                                "hands",
-                                "wash"};
-constexpr Key kDynamicsOnly[] = {"mission",    "failed_thrusters", "tether_anchor_m",
-                                 "navigation", "gripper",          "wash"};
+constexpr Key kPhysicsOnly[] = {
+    "collision",  "dynamics",  "mission", "failed_thrusters", "tether_anchor_m", "tether",
+    "navigation", "human",     "swim",    "jacket_buttons",   "inputs",          "modem",
+    "condition",  "regulator", "thing",   "gripper",          "hands",           "wash"};
+constexpr Key kDynamicsOnly[] = {
+    "mission", "failed_thrusters", "tether_anchor_m", "tether", "navigation", "gripper", "wash"};
 // The default classes that vehicles cannot pass.
 constexpr Key kSolidClasses[] = {"seabed", "rock", "wreck", "structure", "pipe"};
 
@@ -111,6 +98,7 @@ class VehiclePhysicsReader {
       : reader_(reader), object_(object), draft_(draft) {}
 
   std::optional<Modem> modem;  // that it carries
+  TetherDraft tether;          // as which its tether is drawn
 
   Status read() {
     if (!draft_.scene.physics) {
@@ -143,6 +131,9 @@ class VehiclePhysicsReader {
       dynamics.tether_anchor_m = reader_.vector3("tether_anchor_m", Vec3(0.0), kAnyMetres);
     dynamics.gripper = read_grip(reader_, "gripper");
     dynamics.wash = read_wash(reader_);
+    dynamics.tether = read_tether(reader_, object_.object.name, tether);
+    if (dynamics.tether && dynamics.tether_anchor_m)
+      reader_.refuse("tether_anchor_m", "no such key beside tether");
     if (reader_.has("navigation"))
       dynamics.navigation = reader_.choice("navigation", "truth",
                                            std::to_array<Key>({"truth", "measured"})) == "truth"
@@ -293,6 +284,12 @@ Status read_vehicle_physics(SceneDraft& draft, const SceneSource& source,
     TableReader reader(source, tables[i], fmt::format("{}[{}]", path, i), kObjectKeys);
     VehiclePhysicsReader physics(reader, draft.objects[first_object + i], draft);
     NERITIC_TRY_STATUS(physics.read());
+    if (physics.tether.object) {
+      draft.objects[first_object + i].object.dynamics->tether->object = draft.objects.size();
+      physics.tether.object->request = draft.requests.size();
+      draft.requests.push_back(std::move(physics.tether.request));
+      draft.objects.push_back(std::move(*physics.tether.object));
+    }
     if (!physics.modem) continue;
     physics.modem->object = static_cast<int>(first_object + i);
     draft.scene.modems.push_back(std::move(*physics.modem));

@@ -2,6 +2,8 @@
 // (glTF's front face). Pure functions; any thread.
 #include "engine/scene/shapes.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -143,6 +145,46 @@ Model make_cylinder(double radius_m, double height_m, int segments) {
   add_cap(primitive, radius_m, half, segments);
   add_cap(primitive, radius_m, -half, segments);
   return model_of_primitive(std::move(primitive), "cylinder");
+}
+
+Model make_tube(int joints, double radius_m, double length_m) {
+  constexpr int kSides = 6;
+  Primitive primitive;
+  Skin skin;
+  std::vector<Node> nodes;
+  for (int j = 0; j < joints; ++j) {
+    const Vec3 at(0.0, -length_m * j / std::max(joints - 1, 1), 0.0);
+    for (int i = 0; i <= kSides; ++i) {
+      const Vec3 normal = on_circle(i, kSides);
+      add_vertex(primitive, at + radius_m * normal, normal, 2.0 * kPi * radius_m * i / kSides,
+                 -at.y);
+      primitive.joints.push_back({static_cast<std::uint16_t>(j), 0, 0, 0});
+      primitive.weights.emplace_back(1.0f, 0.0f, 0.0f, 0.0f);
+    }
+    Node node;
+    node.name = fmt::format("joint_{}", j);
+    node.translation_m = at;
+    nodes.push_back(std::move(node));
+    skin.joints.push_back(j + 1);
+    Mat4 inverse_bind(1.0);
+    inverse_bind[3] = Vec4(-at, 1.0);
+    skin.inverse_bind.push_back(inverse_bind);
+  }
+  for (int j = 0; j + 1 < joints; ++j)
+    for (int i = 0; i < kSides; ++i) {
+      const auto top = static_cast<std::uint32_t>(j * (kSides + 1) + i);
+      const std::uint32_t bottom = top + kSides + 1;
+      add_triangle(primitive, top, bottom, bottom + 1);
+      add_triangle(primitive, top, bottom + 1, top + 1);
+    }
+  Model model = model_of_primitive(std::move(primitive), "tether");
+  model.skins.push_back(std::move(skin));
+  model.nodes[0].skin = 0;
+  for (Node& node : nodes) {
+    model.roots.push_back(static_cast<int>(model.nodes.size()));
+    model.nodes.push_back(std::move(node));
+  }
+  return model;
 }
 
 void turn_inside_out(Model& model) {

@@ -16,6 +16,9 @@ Model make_sphere(double radius_m, int segments = 48);
 Model make_box(const Vec3& size_m);
 Model make_plane(double size_x_m, double size_z_m);                        // faces +Y
 Model make_cylinder(double radius_m, double height_m, int segments = 48);  // axis Y, capped
+// A tube bent by its joints: nodes 1 to joints, from the top down, each with a ring across its own
+// y; at rest it hangs straight down from the origin.
+Model make_tube(int joints, double radius_m, double length_m);
 // Triangles: sphere 2 n (floor(n / 2) - 1), cylinder 4 n, for n segments.
 
 // A model of one node that draws one primitive.

@@ -35,12 +35,16 @@ Vec3 grip_impulse(const InverseMass& inverse_mass, const BodyMotion& body, const
   return q * (glm::inverse(k) * (glm::conjugate(q) * apart));
 }
 
+Twist given_by(const InverseMass& inverse_mass, const Vec3& at_m, const Vec3& impulse) {
+  const Vec3 turn = glm::cross(at_m, impulse);
+  return {block(inverse_mass, 0, 0) * impulse + block(inverse_mass, 0, 3) * turn,
+          block(inverse_mass, 3, 0) * impulse + block(inverse_mass, 3, 3) * turn};
+}
+
 void hold(const InverseMass& inverse_mass, const Vec3& impulse_n_s, double dt_s, BodyMotion& body,
           Held& held) {
   const Quat q = body.world_from_body.rotation;
-  const Vec3 own = glm::conjugate(q) * impulse_n_s, turn = glm::cross(held.at_m, own);
-  const Vec3 linear = block(inverse_mass, 0, 0) * own + block(inverse_mass, 0, 3) * turn;
-  const Vec3 angular = block(inverse_mass, 3, 0) * own + block(inverse_mass, 3, 3) * turn;
+  const auto [linear, angular] = given_by(inverse_mass, held.at_m, glm::conjugate(q) * impulse_n_s);
   body.world_from_body = moved(body.world_from_body, {0.5 * linear, 0.5 * angular}, dt_s);
   // Velocities stay those of the old axes turned along: seen from the body they keep their numbers.
   body.velocity.linear += linear;

@@ -24,6 +24,8 @@ Vec3 grip_impulse(const InverseMass& inverse_mass, const BodyMotion& body, const
 // Both after that impulse; the body's place follows the mean of its velocities over dt_s.
 void hold(const InverseMass& inverse_mass, const Vec3& impulse_n_s, double dt_s, BodyMotion& body,
           Held& held);
+// The change of the body's velocity by an impulse at a place of it, both in body axes.
+Twist given_by(const InverseMass& inverse_mass, const Vec3& at_m, const Vec3& impulse_n_s);
 // The velocity of a place of the body, world axes.
 Vec3 point_velocity(const BodyMotion& body, const Vec3& at_m);
 

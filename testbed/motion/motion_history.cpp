@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/check.hpp"
+#include "rov/frames.hpp"
 #include "testbed/simulation/object_motion.hpp"
 
 namespace neritic::testbed {
@@ -93,6 +94,12 @@ std::vector<MotionHistory::Moved> moved_objects(const PhysicsWorld& world) {
   for (const PhysicsHuman& human : world.humans()) moved.push_back({human.object, human.nodes});
   for (const PhysicsObject& object : world.objects())
     moved.push_back({object.object, object.joints.nodes});
+  for (const PhysicsTether& tether : world.tethers().all()) {
+    MotionHistory::Moved drawn{tether.object, {}};
+    for (std::uint32_t j = 0; j <= tether.cable.segments * scene::kTetherJoints; ++j)
+      drawn.nodes.push_back(static_cast<int>(j) + 1);
+    moved.push_back(std::move(drawn));
+  }
   return moved;
 }
 
@@ -112,6 +119,13 @@ MotionSnapshot motion_of(const PhysicsWorld& world, const sim::Snapshot<PhysicsS
     if (object.limbs)
       out.joints.push_back(
           drawn_joints(object.joints, snapshot.state.limbs()[*object.limbs], snapshot.time_s));
+  for (std::size_t i = 0; i < world.tethers().all().size(); ++i) {
+    const TetherState& tether = snapshot.state.tethers()[i];
+    out.motions.push_back(
+        Motion{Pose{rov::world_from_ned(tether.top_ned_m)}, Vec3(0.0), Vec3(0.0)});
+    out.joints.push_back(
+        drawn_tether(world.tethers().nodes(snapshot.state, i), tether, snapshot.time_s));
+  }
   return out;
 }
 

@@ -142,6 +142,19 @@ constexpr const char* kEstimateColumns =
     "z_m,sigma_vx_m_s,sigma_vy_m_s,sigma_vz_m_s,sigma_about_x_deg,sigma_about_y_deg,sigma_about_z_"
     "deg,navigation_error_m";
 
+// Of vehicles with a tether of the scene.
+constexpr const char* kTetherColumns =
+    ",tether_n,tether_top_n,tether_most_n,tether_m,tether_straight_m,tether_touching,tether_x_n,"
+    "tether_y_n,tether_z_n";
+
+void append_tether(std::string& out, const std::optional<TetherState>& tether) {
+  if (!tether) return append_empty(out, cells_of(kTetherColumns));
+  const Vec3 pull = rov::world_from_ned(tether->pull_ned_n);
+  append_numbers(out, {tether->end_n, tether->top_n, tether->most_n, tether->length_m,
+                       glm::distance(tether->top_ned_m, tether->end_ned_m),
+                       static_cast<double>(tether->touching), pull.x, pull.y, pull.z});
+}
+
 bool any_navigates(const PhysicsWorld& world) {
   return std::ranges::any_of(world.vehicles(), [](const PhysicsVehicle& vehicle) {
     return vehicle.navigation.has_value();
@@ -183,7 +196,7 @@ void append_motion(std::string& out, const Pose& world_from_body, const Vec6& ve
 struct DiveCsv::Columns {
   std::size_t thrusters = 0;
   std::vector<std::size_t> sensors;  // of kSensorColumns
-  bool estimate = false, humans = false, silent = false;
+  bool estimate = false, tether = false, humans = false, silent = false;
 };
 
 DiveCsv::DiveCsv(const PhysicsWorld& world) : world_(world) {
@@ -193,6 +206,7 @@ DiveCsv::DiveCsv(const PhysicsWorld& world) : world_(world) {
   for (std::size_t i = 0; i < std::size(kSensorColumns); ++i)
     if (any_has(world, kSensorColumns[i])) columns->sensors.push_back(i);
   columns->estimate = any_navigates(world);
+  columns->tether = world.tethers().any();
   columns->humans = !world.humans().empty();
   columns->silent = !world.sources().empty();
   columns_ = std::move(columns);
@@ -225,6 +239,7 @@ void DiveCsv::append(std::string& out, const DiveRow& row) const {
     append_readings(out, sensor, sensor.has(vehicle.file.sensors) ? &row.readings : nullptr);
   }
   if (columns_->estimate) append_estimate(out, row);
+  if (columns_->tether) append_tether(out, row.tether);
   if (columns_->humans) append_empty(out, cells_of(kHumanColumns));
   append_end(out, row.silent, row.hash);
 }
@@ -240,6 +255,7 @@ void DiveCsv::append(std::string& out, const HumanRow& row) const {
   for (const std::size_t i : columns_->sensors)
     append_empty(out, cells_of(kSensorColumns[i].names));
   if (columns_->estimate) append_empty(out, cells_of(kEstimateColumns));
+  if (columns_->tether) append_empty(out, cells_of(kTetherColumns));
   const diver::GasReading& gas = row.gas;
   const diver::DiveComputerView& deco = row.ascent.view;
   const diver::VitalState& vitals = row.vitals;
@@ -297,6 +313,7 @@ std::string DiveCsv::heading() const {
     out += fmt::format(",command_{}_n,thrust_{}_n", i, i);
   for (const std::size_t i : columns_->sensors) out += kSensorColumns[i].names;
   if (columns_->estimate) out += kEstimateColumns;
+  if (columns_->tether) out += kTetherColumns;
   if (columns_->humans) out += kHumanColumns;
   if (columns_->silent) out += ",silent";
   return out + ",hash\n";

@@ -75,6 +75,7 @@ DiveRow DiveRecorder::row_of(std::size_t index, const sim::Snapshot<PhysicsState
   row.hash = snapshot.hash;
   if (const rov::SensorReadings* readings = world_.readings(snapshot.state, index))
     row.readings = *readings;
+  if (vehicle.tether) row.tether = snapshot.state.tethers()[*vehicle.tether];
   row.estimate = world_.estimate(snapshot.state, index);
   return row;
 }

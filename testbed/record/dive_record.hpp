@@ -25,9 +25,10 @@ struct DiveRow {
   Pose wanted;  // world_from_body
   std::size_t waypoint = 0;
   std::uint64_t arrived = 0, near_points = 0, touched_steps = 0;
-  std::uint64_t silent = 0;      // bits of groups of inputs whose source is not heard
-  std::uint64_t hash = 0;        // of the whole state, divers too
-  rov::SensorReadings readings;  // the newest of each sensor that it has
+  std::uint64_t silent = 0;           // bits of groups of inputs whose source is not heard
+  std::uint64_t hash = 0;             // of the whole state, divers too
+  rov::SensorReadings readings;       // the newest of each sensor that it has
+  std::optional<TetherState> tether;  // of one with a tether of the scene
   std::optional<rov::NavigationEstimate> estimate;  // of one that flies on what it measures
 };
 

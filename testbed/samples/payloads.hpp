@@ -402,6 +402,26 @@ struct GripReading {
   }
 };
 
+// A vehicle's tether, where the scene names one.
+struct TetherReading {
+  Vec3 pull_n{0.0};                  // on the vehicle, world axes
+  double tension_n = 0.0;            // of the line at the vehicle
+  double top_n = 0.0, most_n = 0.0;  // at its top; where it is tautest
+  double length_m = 0.0;             // paid out
+  double straight_m = 0.0;           // from its top to the vehicle
+  std::uint64_t touching = 0;        // segments that press on something solid
+
+  static void fields(auto&& field, auto& self) {
+    field("pull_n", self.pull_n);
+    field("tension_n", self.tension_n);
+    field("top_n", self.top_n);
+    field("most_n", self.most_n);
+    field("length_m", self.length_m);
+    field("straight_m", self.straight_m);
+    field("touching", self.touching);
+  }
+};
+
 // The supply that a diver breathes from, if the scene names regulators. Litres at 1 bar.
 struct SupplyReading {
   std::uint64_t donor = 0;   // number of the diver whose gas it is, from 1 on; 0: its own

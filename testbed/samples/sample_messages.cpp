@@ -46,6 +46,8 @@ std::string_view words_of(PayloadKind kind) {
       return "choice: 0 by itself, 1 open, 2 close";
     case PayloadKind::kGripper:
       return "held: an object's number from 1 on, 0 nothing; place, load, nearest thing";
+    case PayloadKind::kTether:
+      return "a tether; pull: on the vehicle; touching: segments that press on something solid";
     case PayloadKind::kPressure:
       return "absolute pressure, and the depth that the sensor makes of it";
     case PayloadKind::kCompass:

@@ -24,6 +24,7 @@ bool leaves(const Stream& stream) {
     case PayloadKind::kCondition:
     case PayloadKind::kSupply:
     case PayloadKind::kGripper:
+    case PayloadKind::kTether:
       return true;
     default:
       return false;
@@ -83,7 +84,8 @@ OutputSamples::Made OutputSamples::every(double period_s, std::uint64_t step) co
 
 OutputSamples::Made OutputSamples::made(const Stream& stream,
                                         const sim::Snapshot<PhysicsState>& snapshot) const {
-  if (stream.kind == PayloadKind::kMotion || stream.kind == PayloadKind::kGripper)
+  if (stream.kind == PayloadKind::kMotion || stream.kind == PayloadKind::kGripper ||
+      stream.kind == PayloadKind::kTether)
     return every(std::max(1.0 / kDiverMotion_hz, world_.step_s()), snapshot.step);
   if (stream.kind == PayloadKind::kComputer || stream.kind == PayloadKind::kCondition ||
       stream.kind == PayloadKind::kSupply)
@@ -139,6 +141,8 @@ Payload OutputSamples::payload(const Stream& stream, const PhysicsState& state) 
   if (stream.kind == PayloadKind::kGripper)
     return grip_reading(world_.things(), *world_.things().find(stream.sort, stream.owner),
                         world_.humans(), state);
+  if (stream.kind == PayloadKind::kTether)
+    return tether_reading(state.tethers()[*world_.vehicles()[stream.owner].tether]);
   if (stream.sort == OwnerSort::kDiver) {
     const PhysicsHuman& human = world_.humans()[stream.owner];
     const HumanPhysics& now = state.humans()[stream.owner];

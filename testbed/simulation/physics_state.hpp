@@ -12,6 +12,7 @@
 #include "diver/swimmer.hpp"
 #include "engine/sim/block.hpp"
 #include "engine/sim/simulation.hpp"
+#include "rov/cable.hpp"
 #include "rov/dynamics.hpp"
 #include "rov/navigation_state.hpp"
 #include "rov/sensor_set.hpp"
@@ -213,11 +214,34 @@ struct GripState {
   }
 };
 
+// A vehicle's tether (tethers.hpp); its nodes are apart.
+struct TetherState {
+  double length_m = 0.0;  // paid out
+  Vec3 top_ned_m{0.0}, end_ned_m{0.0};
+  Vec3 pull_ned_n{0.0};  // on the vehicle, in the last step
+  double end_n = 0.0, top_n = 0.0, most_n = 0.0;
+  std::uint64_t touching = 0;     // segments
+  std::uint64_t unconverged = 0;  // steps so far
+
+  static void fields(auto&& field, auto& self) {
+    field("length_m", self.length_m);
+    field("top_ned_m", self.top_ned_m);
+    field("end_ned_m", self.end_ned_m);
+    field("pull_ned_n", self.pull_ned_n);
+    field("end_n", self.end_n);
+    field("top_n", self.top_n);
+    field("most_n", self.most_n);
+    field("touching", self.touching);
+    field("unconverged", self.unconverged);
+  }
+};
+
 // The state of a scene's physics: one block, sized once from the scene (PhysicsWorld::start()).
 class PhysicsState
     : public sim::Block<VehicleState, HumanPhysics, rov::SensorReadings, rov::NavigationState,
                         ObjectState, sonar::ModemState, ModemTasks, diver::ConditionState,
-                        RegulatorState, ThingState, GripState, LimbState> {
+                        RegulatorState, ThingState, GripState, LimbState, TetherState,
+                        rov::CableNode> {
  public:
   PhysicsState() = default;
   // sensing: vehicles that have sensors; navigating: those that fly on what they measure; objects:
@@ -226,9 +250,10 @@ class PhysicsState
   PhysicsState(std::size_t vehicles, std::size_t humans, std::size_t sensing,
                std::size_t navigating, std::size_t objects = 0, std::size_t modems = 0,
                std::size_t conditions = 0, std::size_t regulators = 0, std::size_t things = 0,
-               std::size_t grips = 0, std::size_t limbs = 0)
+               std::size_t grips = 0, std::size_t limbs = 0, std::size_t tethers = 0,
+               std::size_t tether_nodes = 0)
       : Block({vehicles, humans, sensing, navigating, objects, modems, modems, conditions,
-               regulators, things, grips, limbs}) {}
+               regulators, things, grips, limbs, tethers, tether_nodes}) {}
 
   std::span<VehicleState> vehicles() { return part<VehicleState>(); }
   std::span<const VehicleState> vehicles() const { return part<VehicleState>(); }
@@ -249,6 +274,13 @@ class PhysicsState
   // For the objects that have limbs, in their order.
   std::span<LimbState> limbs() { return part<LimbState>(); }
   std::span<const LimbState> limbs() const { return part<LimbState>(); }
+
+  // For the vehicles with a tether: PhysicsVehicle::tether finds a vehicle's. Their nodes, from the
+  // top down, one tether after another.
+  std::span<TetherState> tethers() { return part<TetherState>(); }
+  std::span<const TetherState> tethers() const { return part<TetherState>(); }
+  std::span<rov::CableNode> tether_nodes() { return part<rov::CableNode>(); }
+  std::span<const rov::CableNode> tether_nodes() const { return part<rov::CableNode>(); }
 
   // For the divers whose condition the scene names: PhysicsHuman::condition finds a diver's.
   std::span<diver::ConditionState> conditions() { return part<diver::ConditionState>(); }
@@ -287,11 +319,16 @@ class PhysicsState
     field("things", things);
     field("grips", grips);
     field("limbs", limbs);
+    auto tethers = self.tethers();
+    auto tether_nodes = self.tether_nodes();
+    field("tethers", tethers);
+    field("tether_nodes", tether_nodes);
   }
   // The hash covers groups once a live source was asked for, and navigation, objects, modems,
-  // conditions, regulators, things and limbs where there are any.
+  // conditions, regulators, things, limbs and tethers where there are any.
   std::span<const std::uint64_t> hashed_counts() const {
-    const std::size_t kinds = !limbs().empty()        ? kKinds
+    const std::size_t kinds = !tethers().empty()      ? kKinds
+                              : !limbs().empty()      ? 12
                               : !things().empty()     ? 11
                               : !regulators().empty() ? 9
                               : !conditions().empty() ? 8
@@ -329,6 +366,9 @@ class PhysicsState
     auto things = self.things();
     auto grips = self.grips();
     if (!things.empty()) field("things", things), field("grips", grips);
+    auto tethers = self.tethers();
+    auto tether_nodes = self.tether_nodes();
+    if (!tethers.empty()) field("tethers", tethers), field("tether_nodes", tether_nodes);
   }
 };
 

@@ -1,8 +1,8 @@
 // The step (physics_world.hpp): things are grabbed or let go; every vehicle and diver by itself;
-// then, one after another, pairs that meet and things that are held; then every one along what is
-// solid; at last free things, gas taken from others, modems. Threads share the second and fourth. A
-// vehicle's step has a part between any two instants of its control and its sensors; all parts but
-// the last end before pairs meet.
+// then, one after another, pairs that meet, things that are held and tethers; then every one along
+// what is solid; at last free things, gas taken from others, modems. Threads share the second and
+// fourth. A vehicle's step has a part between any two instants of its control and its sensors; all
+// parts but the last end before pairs meet.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -107,13 +107,14 @@ constexpr std::size_t kRoomForContacts = 256;
 PhysicsState PhysicsWorld::start() const {
   PhysicsState state(vehicles_.size(), humans_.size(), sensing_, navigating_, objects_.size(),
                      modems_.all().size(), conditions_, regulators_, things_.things().size(),
-                     things_.grips().size(), limbs_);
+                     things_.grips().size(), limbs_, tethers_.all().size(), tethers_.node_count());
   for (std::size_t i = 0; i < vehicles_.size(); ++i) state.vehicles()[i].body = vehicles_[i].start;
   for (std::size_t i = 0; i < humans_.size(); ++i) {
     state.humans()[i] = humans_[i].start;
     start_condition(humans_[i], state, humans_[i].start);
   }
   things_.start(state);
+  if (tethers_.any()) tethers_.start(solid_, state);
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     sense(i, {}, -1.0, 0.0, state);
     start_navigation(i, state);
@@ -172,6 +173,7 @@ StepScratch PhysicsWorld::scratch(unsigned threads) const {
                       std::vector<Vec3>(things_.things().size(), Vec3(0.0)),
                       {},
                       {},
+                      {},
                       std::vector<sim::ContactMemory>(threads),
                       sim::Workers(threads)};
   scratch.finder.begin(vehicles_.size(), vehicles_.size() + humans_.size());
@@ -200,6 +202,7 @@ void PhysicsWorld::step(const PhysicsState& before, const PhysicsInputs& inputs,
   });
   if (vehicles + humans > 1) part_all(call);
   if (things_.any()) pull_all(call);
+  if (tethers_.any()) step_tethers(call);
   scratch.workers.run(humans + vehicles, [&](std::size_t i, unsigned thread) {
     i < humans ? finish_human(call, i, thread) : finish_vehicle(call, i - humans, thread);
   });
@@ -241,6 +244,27 @@ void PhysicsWorld::pull_all(const StepCall& call) const {
       HumanStep& moving = call.scratch.humans[grip.owner].moving;
       pull(moving.inverse_mass, moving.free);
     }
+  }
+}
+
+// Each tether pulls at its vehicle.
+void PhysicsWorld::step_tethers(const StepCall& call) const {
+  for (std::size_t i = 0; i < tethers_.all().size(); ++i) {
+    const std::size_t vehicle = tethers_.all()[i].vehicle;
+    VehicleScratch& own = call.scratch.vehicles[vehicle];
+    const rov::State& was = call.before.vehicles()[vehicle].body;
+    sim::PairBody body = pair_body(whole_step(call, vehicle), own.free);
+    const Motion before = motion_of(call.before.vehicles()[vehicle]);
+    const auto current = [&](const Vec3& at_ned_m) {
+      return current_ned_m_s(at_ned_m, call.time.time_s());
+    };
+    if (!tethers_.step(i, solid_, current, call.before, call.time,
+                       {body.inverse_mass, rov::world_pose(was.position_ned_m, was.attitude),
+                        before.velocity_m_s, before.angular_velocity_rad_s, body.free},
+                       call.scratch.tether, call.scratch.contacts.front(), call.after))
+      continue;
+    set_motion(body.free, own.free);
+    own.pulled = true;
   }
 }
 

@@ -17,6 +17,9 @@ namespace {
 constexpr double kMostStartDepth_m = 0.02;
 
 Status check_anchor(const scene::Scene& scene, const scene::Object& object, bool tethered) {
+  if (tethered && object.dynamics->tether)
+    return bad_input("{}: {}: tether found; accepted: no such key, since {} has a [tether]",
+                     scene.path, object.name, object.dynamics->file.string());
   if (tethered == object.dynamics->tether_anchor_m.has_value()) return {};
   if (tethered)
     return bad_input(
@@ -82,6 +85,9 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
   }
   NERITIC_TRY_STATUS(world->find_donors(scene));
   NERITIC_TRY(world->things_, Things::create(scene, world->movers_));
+  NERITIC_TRY(world->tethers_, Tethers::create(scene, world->movers_));
+  for (std::size_t i = 0; i < world->tethers_.all().size(); ++i)
+    world->vehicles_[world->tethers_.all()[i].vehicle].tether = i;
   world->water_kg_m3_ = scene.physics->water_kg_m3;
   NERITIC_TRY(world->modems_, Modems::create(scene, world->movers_));
   for (const PhysicsModem& modem : world->modems_.all())
@@ -111,8 +117,10 @@ void PhysicsWorld::choose_inputs(const scene::Scene& scene) {
     return {PayloadKind::kGripper, PayloadKind::kGrip};
   };
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+    std::vector<PayloadKind> named = grip_kinds(OwnerSort::kVehicle, i);
+    if (vehicles_[i].tether) named.push_back(PayloadKind::kTether);
     streams_.add_vehicle(vehicles_[i].name, vehicles_[i].file.sensors,
-                         modem(OwnerSort::kVehicle, i), grip_kinds(OwnerSort::kVehicle, i));
+                         modem(OwnerSort::kVehicle, i), named);
     start_inputs_.vehicles()[i] =
         chosen_inputs(scene.objects[vehicles_[i].object].dynamics->inputs, sources_);
   }

@@ -19,6 +19,7 @@
 #include "testbed/simulation/modems.hpp"
 #include "testbed/simulation/pair_finder.hpp"
 #include "testbed/simulation/saved_state.hpp"
+#include "testbed/simulation/tethers.hpp"
 #include "testbed/simulation/things.hpp"
 #include "testbed/simulation/vehicle_kinds.hpp"
 
@@ -39,7 +40,8 @@ struct PhysicsVehicle {
   const rov::Vehicle& vehicle = kind.model.vehicle;
   std::uint64_t failed_thrusters = 0;  // at the start
   std::optional<MissionGuide> mission;
-  Vec3 tether_anchor_ned_m{0.0};
+  Vec3 tether_anchor_ned_m{0.0};      // of the file's
+  std::optional<std::size_t> tether;  // of PhysicsState::tethers(); none: the scene names none
   std::optional<scene::Wash> wash;
   rov::State start;
   std::optional<std::size_t> readings;  // of PhysicsState::readings(); none: without sensors
@@ -64,7 +66,7 @@ struct VehicleScratch {
   rov::State free;      // after the part, as if the water were empty; changed by what it meets
   rov::Vec6 alone_ned;  // its velocity then, as if there were no other vehicle or diver
   bool parted = false;
-  bool pulled = false;    // by what it holds
+  bool pulled = false;    // by what it holds, or its tether
   ContactReport contact;  // of the step so far
 };
 struct HumanScratch {
@@ -76,6 +78,7 @@ struct StepScratch {
   std::vector<VehicleScratch> vehicles;
   std::vector<HumanScratch> humans;
   std::vector<Vec3> thing_currents_m_s;
+  TetherScratch tether;
   PairFinder finder;
   sim::PairMemory pair;
   std::vector<sim::ContactMemory> contacts;  // of each thread
@@ -103,6 +106,7 @@ class PhysicsWorld {
   const std::vector<PhysicsObject>& objects() const { return objects_; }
   const Modems& modems() const { return modems_; }
   const Things& things() const { return things_; }
+  const Tethers& tethers() const { return tethers_; }
   const sim::StaticWorld& solid() const { return solid_; }
   std::uint64_t seed() const { return seed_; }
   double step_s() const { return step_s_; }
@@ -175,6 +179,7 @@ class PhysicsWorld {
   void finish_human(const StepCall& call, std::size_t k, unsigned thread) const;
   void step_modems(const StepCall& call) const;
   void pull_all(const StepCall& call) const;
+  void step_tethers(const StepCall& call) const;
   void start_navigation(std::size_t index, PhysicsState& state) const;
   void navigate(std::size_t index, double time_s, PhysicsState& state) const;
   rov::Inputs acting_on(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
@@ -199,6 +204,7 @@ class PhysicsWorld {
   PhysicsInputs start_inputs_;
   Modems modems_;
   Things things_;
+  Tethers tethers_;
   double water_kg_m3_ = 1028.0;
   bool washes_ = false;  // a vehicle names its wash
 };

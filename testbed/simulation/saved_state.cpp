@@ -109,7 +109,7 @@ Result<std::vector<std::string>> parse_names(std::span<const std::byte> bytes, s
 
 std::uint64_t StateFormat::layout_hash() const {
   Hash64 hash;
-  add_fields(hash, PhysicsState(1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1));
+  add_fields(hash, PhysicsState(1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1));
   add_fields(hash, PhysicsInputs(1, 1, 1, 1, 1, 1, 1));
   for (const std::uint64_t count : state.counts()) hash.add(count);
   for (const std::uint64_t count : inputs.counts()) hash.add(count);

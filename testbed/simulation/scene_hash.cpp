@@ -148,10 +148,22 @@ class SceneHash {
     add(dynamics.inputs);
     number(dynamics.tether_anchor_m.has_value());
     if (dynamics.tether_anchor_m) vec(*dynamics.tether_anchor_m);
+    if (dynamics.tether) add(*dynamics.tether);
     if (dynamics.gripper) text("gripper"), add(*dynamics.gripper);
     if (dynamics.wash) text("wash"), numbers(dynamics.wash->diameter_m, dynamics.wash->reach_m);
     number(dynamics.mission.has_value());
     if (dynamics.mission) add(*dynamics.mission);
+  }
+
+  void add(const scene::Tether& t) {
+    text("tether");
+    number(t.object);
+    vec(t.attachment_m);
+    number(t.segments);
+    numbers(t.length_m, t.diameter_m, t.net_weight_n_m, t.stiffness_n, t.damping_n_s, t.normal_drag,
+            t.tangential_drag, t.friction);
+    number(t.winch.has_value());
+    if (t.winch) numbers(t.winch->hold_n, t.winch->speed_m_s, t.winch->least_m, t.winch->most_m);
   }
 
   void add(const std::vector<scene::InputChoice>& inputs) {

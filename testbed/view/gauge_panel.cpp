@@ -24,7 +24,8 @@ void thrust_bar(ImDrawList& list, ImVec2 from, ImVec2 size, double share, bool f
 
 }  // namespace
 
-VehicleGauges gauges_of(const PhysicsVehicle& vehicle, const VehicleState& state) {
+VehicleGauges gauges_of(const PhysicsVehicle& vehicle, const VehicleState& state,
+                        const TetherState* line) {
   const rov::State& body = state.body;
   VehicleGauges out{.name = vehicle.name,
                     .depth_m = body.position_ned_m.z,
@@ -47,6 +48,11 @@ VehicleGauges gauges_of(const PhysicsVehicle& vehicle, const VehicleState& state
     out.tether_n =
         glm::length(rov::tether_force_n(*tether, anchor, at, velocity, body.held.current_ned_m_s));
     out.tether_used = glm::distance(at, anchor) / tether->length_m;
+  }
+  if (line) {
+    out.tether_n = line->end_n;
+    out.tether_used = glm::distance(line->top_ned_m, line->end_ned_m) / line->length_m;
+    out.tether_touching = line->touching;
   }
   return out;
 }
@@ -71,8 +77,9 @@ void draw_gauges(const VehicleGauges& gauges, const PanelRect& rect, float scale
                gauges.failed[i]);
   }
   if (gauges.tether_used > 0.0)
-    text_line(fmt::format("tether {:.0f} N, {:.0f} % of its length out", gauges.tether_n,
-                          100.0 * gauges.tether_used));
+    text_line(fmt::format("tether {:.0f} N, {:.0f} % of its length out{}", gauges.tether_n,
+                          100.0 * gauges.tether_used,
+                          gauges.tether_touching > 0 ? ", it touches" : ""));
   ImGui::End();
 }
 

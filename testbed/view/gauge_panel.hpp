@@ -15,9 +15,12 @@ struct VehicleGauges {
   double depth_m = 0.0, heading_deg = 0.0, speed_m_s = 0.0;
   std::vector<double> thrust;  // each thruster's share of its limit, -1 to 1
   std::vector<bool> failed;
+  std::uint64_t tether_touching = 0;         // segments on something solid
   double tether_n = 0.0, tether_used = 0.0;  // pull; distance over its length. used 0: no tether
 };
-VehicleGauges gauges_of(const PhysicsVehicle& vehicle, const VehicleState& state);
+// tether: of one to which the scene gives one.
+VehicleGauges gauges_of(const PhysicsVehicle& vehicle, const VehicleState& state,
+                        const TetherState* tether = nullptr);
 
 PanelWish gauges_wish(const VehicleGauges& gauges);
 void draw_gauges(const VehicleGauges& gauges, const PanelRect& rect, float scale);

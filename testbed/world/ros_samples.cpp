@@ -338,6 +338,16 @@ void describe(Io& io, auto& p, const GripReading*) {
   io.number("drops", p.drops);
 }
 template <class Io>
+void describe(Io& io, auto& p, const TetherReading*) {
+  io.vector("pull", p.pull_n, enu, world);
+  io.number("tension_n", p.tension_n);
+  io.number("top_n", p.top_n);
+  io.number("most_n", p.most_n);
+  io.number("length_m", p.length_m);
+  io.number("straight_m", p.straight_m);
+  io.number("touching", p.touching);
+}
+template <class Io>
 void describe(Io& io, auto& p, const ConditionReading*) {
   io.number("alveolar_mmhg", p.alveolar_mmhg);
   io.number("saturation", p.saturation);
@@ -435,6 +445,7 @@ std::string frame_of(PayloadKind kind, const std::string& owner) {
     case PayloadKind::kCompass:
     case PayloadKind::kCollision:
     case PayloadKind::kGripper:
+    case PayloadKind::kTether:
     case PayloadKind::kMotion:
     case PayloadKind::kSetpoint:
     case PayloadKind::kObjectPose:

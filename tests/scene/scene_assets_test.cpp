@@ -142,6 +142,8 @@ TEST(SceneAssets, TheFormatsPageHasEveryKey) {
                              KeyList(kShutterKeys),
                              KeyList(kImageSensorKeys),
                              KeyList(kFlockKeys),
+                             KeyList(kTetherKeys),
+                             KeyList(kWinchKeys),
                              KeyList(kWaterKeys),
                              KeyList(kForwardScatterKeys),
                              KeyList(kSnowKeys),

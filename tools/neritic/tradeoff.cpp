@@ -19,6 +19,7 @@
 #include "tools/tradeoff/physiology_tradeoff.hpp"
 #include "tools/tradeoff/sonar_tradeoff.hpp"
 #include "tools/tradeoff/swim_tradeoff.hpp"
+#include "tools/tradeoff/tether_tradeoff.hpp"
 #include "tools/tradeoff/xr_tradeoff.hpp"
 
 namespace neritic::tools {
@@ -100,6 +101,14 @@ Result<std::string> trade_modem(const TradeoffFlags& flags) {
   NERITIC_TRY(const bool drawn,
               write_modem_tradeoff(flags.out, run_modem_tradeoff(flags.quick ? 100 : 20'000)));
   return fmt::format("{}: modem.csv, .md, .plot.json{}", flags.out.string(), drawn ? ", .png" : "");
+}
+
+Result<std::string> trade_tether(const TradeoffFlags& flags) {
+  if (!flags.kind.empty())
+    return refusal("tradeoff tether", fmt::format("kind '{}'", flags.kind), "none");
+  NERITIC_TRY(const bool drawn, write_tether_tradeoff(flags.out, run_tether_tradeoff(flags.quick)));
+  return fmt::format("{}: tether.csv, .md, .plot.json{}", flags.out.string(),
+                     drawn ? ", .png" : "");
 }
 
 Result<std::string> trade_xr(const TradeoffFlags& flags) {
@@ -228,14 +237,15 @@ Result<std::string> run_tradeoff(const TradeoffFlags& flags) {
   if (flags.what == "physiology") return trade_physiology(flags);
   if (flags.what == "deco") return trade_deco(flags);
   if (flags.what == "modem") return trade_modem(flags);
+  if (flags.what == "tether") return trade_tether(flags);
   if (flags.what == "xr") return trade_xr(flags);
   if (flags.what == "network") return trade_network(flags);
   if (flags.what == "experiment") return trade_experiment(flags);
   if (flags.what == "camera") return trade_camera(flags);
   if (flags.what == "optics") return trade_optics(flags);
   return refusal("tradeoff", fmt::format("'{}'", flags.what),
-                 "sonar, physics, navigation, swim, deco, physiology, modem, network, xr, "
-                 "experiment, camera or optics");
+                 "sonar, physics, navigation, swim, deco, physiology, modem, tether, network, "
+                 "xr, experiment, camera or optics");
 }
 
 }  // namespace neritic::tools

@@ -135,7 +135,7 @@ void add_tradeoff(CLI::App& app, Run& run) {
   command
       ->add_option(
           "what", flags->what,
-          "sonar, physics, navigation, swim, deco, physiology, modem, network, xr, camera, "
+          "sonar, physics, navigation, swim, deco, physiology, modem, tether, network, xr, camera, "
           "optics or experiment (time to block and success of the task `shark`)")
       ->required();
   command
