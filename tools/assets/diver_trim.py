@@ -194,14 +194,18 @@ def fins(look):
 def extras(look):
     """Dive computer on the left wrist, knife on the right shin."""
     at = SHOULDER + ARM * (UPPER + FORE - 0.07)
-    wrist = join(
+    lcd, ink = (0.19, 0.23, 0.20), (0.02, 0.022, 0.02)
+    figures = [(-0.010, -0.011, 0.010, 0.004), (-0.010, 0.006, 0.010, 0.008), (0.008, -0.008, 0.007, 0.005), (0.008, 0.010, 0.007, 0.004)]
+    wrist = join(  # x along the arm, y off its back, so that the strap is round the wrist
         [
-            box(0.052, 0.020, 0.056, 0.008, 1).colored(DARK),
-            cylinder(0.022, 0.006, 18).rot("x", 90).at(0, 0.011, 0).colored((0.25, 0.32, 0.30)),
-            ring_band(0.040, 0.045, 0.024, 24).rot("x", 90).rot("z", 90).rot("y", 0).at(0, -0.034, 0).colored(BLACK),
+            box(0.056, 0.022, 0.054, 0.009, 1).colored(DARK),
+            box(0.040, 0.003, 0.042, 0.001, 1).at(0, 0.0115, 0).colored(lcd),
+            ring_band(0.039, 0.044, 0.024, 24).rot("x", 90).rot("z", 90).at(0, -0.042, 0).colored(BLACK),
         ]
+        + [box(w, 0.001, d, 0.0003, 1).at(x, 0.0132, z).colored(ink) for x, z, w, d in figures]
     )
-    wrist = wrist.rot("z", 45).at(*(at + np.array([0.030, 0.030, 0]))).mirrored()
+    out = np.array([0.042, 0.042, 0]) / np.sqrt(2)
+    wrist = wrist.rot("z", -45).at(*(at + out)).mirrored()
     knife = join(
         [
             box(0.030, 0.20, 0.018, 0.007, 1).colored(BLACK),
