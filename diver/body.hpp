@@ -6,11 +6,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "diver/anthropometry.hpp"
 #include "diver/exertion.hpp"
 #include "diver/gear.hpp"
 #include "diver/spatial_mass.hpp"
+#include "engine/core/water_column.hpp"
 
 namespace neritic::diver {
 
@@ -103,6 +105,10 @@ struct Body {
   Jacket jacket;         // scaled to the body; capacity 0: none
   Model model = Model::kFull;
   double height_m = 0.0, water_kg_m3 = 0.0;
+  std::optional<WaterColumn> column = {};  // whose density carries the body, where it is named
+  double density_kg_m3(double depth_m) const {
+    return column ? column->density_kg_m3(depth_m) : water_kg_m3;
+  }
   double surface_pa = kSurfacePressure_pa;
   double lead_kg = 0.0;
   // Whether a segment moves by itself; else it is part of the one it hangs on.

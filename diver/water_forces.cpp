@@ -189,7 +189,7 @@ StaticForces static_forces(const Body& body, const Posture& posture, const Vec6&
     arm_sum += newtons_down * (pose.origin_m + arm);
     limb_sum += newtons_down * (pose.velocity_m_s + glm::cross(pose.angular_rad_s, arm));
   };
-  const double lift_n_m3 = body.water_kg_m3 * kGravity_m_s2;
+  const double lift_n_m3 = body.density_kg_m3(immersion.depth_m) * kGravity_m_s2;
   for (std::size_t i = 0; i < kSegments; ++i)
     if (body.segments[i].mass_kg > 0.0)
       add(kGravity_m_s2 * body.segments[i].mass_kg, posture[i], body.segments[i].mass_centre_m);

@@ -45,6 +45,7 @@ layout(
 layout(location = 11) flat out vec4 lamp_light;  // of the strongest lamp's, and the same
 layout(location = 12) flat out vec3 to_lamp;
 layout(location = 13) flat out vec3 veil;
+layout(location = 14) flat out vec4 lit_at;  // its place, and the share of the beam's core
 
 // Share of even light that a small pale thing sends on. Aggregates of marine snow are translucent.
 const vec3 kSnowAlbedo = vec3(0.55, 0.57, 0.55);
@@ -54,13 +55,17 @@ const vec3 kSiltAlbedo = vec3(0.42, 0.38, 0.30);
 // side (Lambert's sphere), falling to none; what passes through counts for a third.
 float sphere_share(float cosine) { return (0.33 + 0.67 * (0.5 + 0.5 * cosine)) * 0.667 / kPi; }
 
-vec3 radiance_of(vec3 at, vec3 to_eye, vec3 albedo) {
+// beam: what of it comes straight from the sun.
+vec3 radiance_of(vec3 at, vec3 to_eye, vec3 albedo, out vec3 beam) {
   vec3 sum = vec3(0.0);
+  beam = vec3(0.0);
   if (light_has(kLightSun)) {
     float depth_m = light.origin_depth_m - at.y;
     vec3 irradiance = downwelling(depth_m);
     vec3 direct = direct_share(depth_m);
-    sum += irradiance * direct / light.sun_cosine * sphere_share(dot(light.to_sun, to_eye));
+    beam = irradiance * direct / light.sun_cosine * sphere_share(dot(light.to_sun, to_eye));
+    sum += beam;
+    beam *= albedo;
     sum += irradiance * (1.0 - direct) * sphere_share(to_eye.y) * 1.3;
   }
   for (uint i = 0u; i < lamp_count(); ++i) {
@@ -119,6 +124,7 @@ void main() {
   sun_light = lamp_light = vec4(0.0);
   kind = in_kind;
   flatness = vec4(0.0);
+  lit_at = vec4(in_position.xyz, core_share(light.origin_depth_m - in_position.y));
   if (!(now.w > views[view].near_m)) return;
   if (!(later.w > views[view].near_m)) later = now;
   vec2 half_size = 0.5 * push.target_size;
@@ -163,9 +169,11 @@ void main() {
     upright = vec3(cos(tilt) * axis.x - sin(tilt) * axis.y, sin(tilt) * axis.x + cos(tilt) * axis.y,
                    seen);
   } else {
-    body = (radiance_of(in_position.xyz, to_eye, albedo) * sight.transmittance + sight.added) *
+    vec3 beam;
+    body = (radiance_of(in_position.xyz, to_eye, albedo, beam) * sight.transmittance + sight.added) *
            light.exposure;
     body = min(body, vec3(60000.0));
+    sun_light.rgb = min(beam * sight.transmittance * light.exposure, vec3(60000.0));
   }
   shape = vec3(0.5 * streak, radius, in_moved.w * share);
   flatness = vec4(distance_m, in_position.w, along);

@@ -7,6 +7,7 @@
 #include "engine/core/check.hpp"
 #include "engine/core/math.hpp"
 #include "engine/core/refusal.hpp"
+#include "engine/core/water_column.hpp"
 
 namespace neritic::sonar {
 namespace {
@@ -92,9 +93,7 @@ Status validate(const Water& water) {
 }
 
 double sound_speed_mackenzie_m_s(const Water& water) {
-  const double t = water.temperature_c, s = water.salinity_psu - 35.0, d = water.depth_m;
-  return 1448.96 + 4.591 * t - 5.304e-2 * t * t + 2.374e-4 * t * t * t + 1.340 * s + 1.630e-2 * d +
-         1.675e-7 * d * d - 1.025e-2 * t * s - 7.139e-13 * t * d * d * d;
+  return sea_sound_speed_m_s({water.temperature_c, water.salinity_psu}, water.depth_m);
 }
 
 double absorption_db_m(AbsorptionModel model, const Water& water, double frequency_hz) {

@@ -60,9 +60,9 @@ double target_cell_rad(const scene::Sonar& sonar, const HeadPatterns& patterns) 
 
 double sound_speed_of(const scene::SonarWater& water, double depth_m) {
   if (water.sound_speed_m_s) return *water.sound_speed_m_s;
-  return sound_speed_mackenzie_m_s({water.temperature_c, water.salinity_psu,
-                                    std::clamp(water.depth_m.value_or(depth_m), 0.0, 12000.0),
-                                    water.ph});
+  const double depth_of_m = std::clamp(water.depth_m.value_or(depth_m), 0.0, 12000.0);
+  const SeaWater there = water.at(depth_of_m);
+  return sound_speed_mackenzie_m_s({there.temperature_c, there.salinity_psu, depth_of_m, water.ph});
 }
 
 Result<HeadPatterns> head_patterns(const scene::Sonar& sonar) {

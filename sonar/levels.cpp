@@ -17,8 +17,9 @@ double absorption_of(const scene::SonarTerms& terms, double depth_m) {
   if (level.absorption == SonarLevel::Absorption::kNone) return 0.0;
   if (level.absorption == SonarLevel::Absorption::kFixed) return level.absorption_db_per_m;
   const scene::SonarWater& w = terms.water;
-  const Water water{w.temperature_c, w.salinity_psu,
-                    std::clamp(w.depth_m.value_or(depth_m), 0.0, 12000.0), w.ph};
+  const double depth_of_m = std::clamp(w.depth_m.value_or(depth_m), 0.0, 12000.0);
+  const SeaWater there = w.at(depth_of_m);
+  const Water water{there.temperature_c, there.salinity_psu, depth_of_m, w.ph};
   const AbsorptionModel model = level.absorption == SonarLevel::Absorption::kAinslieMcColm
                                     ? AbsorptionModel::kAinslieMcColm
                                     : AbsorptionModel::kFrancoisGarrison;

@@ -27,6 +27,16 @@ json water_json(const scene::SonarWater& water) {
   json out{{"temperature_c", water.temperature_c},
            {"salinity_psu", water.salinity_psu},
            {"ph", water.ph}};
+  if (water.column) {
+    out = {{"ph", water.ph}};
+    out["layers"] = json::array({{{"temperature_c", water.column->temperature_c},
+                                  {"salinity_psu", water.column->salinity_psu}}});
+    for (const WaterLayer& layer : water.column->layers())
+      out["layers"].push_back({{"depth_m", layer.depth_m},
+                               {"thickness_m", layer.thickness_m},
+                               {"temperature_c", layer.temperature_c},
+                               {"salinity_psu", layer.salinity_psu}});
+  }
   if (water.depth_m) out["depth_m"] = *water.depth_m;
   if (water.sound_speed_m_s) out["sound_speed_m_s"] = *water.sound_speed_m_s;
   return out;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <tuple>
@@ -68,12 +69,21 @@ struct DeformedGeometry {
   graph::BufferHandle positions, next_positions;
 };
 
+// Inputs of light shafts: the sun's maps and the caustics, either of which may be empty.
+struct ShaftInputs {
+  shared::VisibilityParams sun{};
+  std::uint32_t cascade_count = 0;
+  graph::ImageHandle cascades, caustics;
+  shared::ShaftParams params{};
+};
+
 // Images of what stands in the light's way to the surfaces of one view set. A handle is empty where
 // the scene does not name the term.
 struct LightImages {
   graph::ImageHandle seen;  // of sun, sky and surroundings (shaders/visibility.comp)
   graph::ImageHandle caustics;
-  graph::ImageHandle shafts;  // of the sun's light in the water (shaders/shafts.comp)
+  graph::ImageHandle shafts;                // of the sun's light in the water (shaders/shafts.comp)
+  std::optional<ShaftInputs> shaft_inputs;  // where there are shafts: what lights particles too
   graph::ImageHandle lamp_maps;
   shared::LampShadows lamp_shadows{};  // of lamp_maps
 };
@@ -91,14 +101,6 @@ struct ShadeInputs {
   const shared::Waves* waves = nullptr;  // with the term kLightWaves
   std::uint32_t visibility_step = 2;     // of light.seen
   std::uint32_t inscatter_samples = 4;   // of a lamp's beam along a sight
-};
-
-// Inputs of light shafts: the sun's maps and the caustics, either of which may be empty.
-struct ShaftInputs {
-  shared::VisibilityParams sun{};
-  std::uint32_t cascade_count = 0;
-  graph::ImageHandle cascades, caustics;
-  shared::ShaftParams params{};
 };
 
 // Where depth maps of lights are drawn: into layers of an image that is there, over what it has or
@@ -198,6 +200,14 @@ class Renderer {
   Result<graph::ImageHandle> declare_shutter(graph::FrameGraph& graph, const std::string& prefix,
                                              graph::ImageHandle hdr, const GBuffer& gbuffer,
                                              const shared::ShutterParams& params);
+  // The G-buffer with its albedo as reflectances of the three thirds of the spectrum
+  // (engine/render/bands.hpp); and pictures of three bands each, joined by the camera's response.
+  Result<GBuffer> declare_band_albedo(graph::FrameGraph& graph, const std::string& prefix,
+                                      const GBuffer& gbuffer, const Mat3& bands_from_rgb);
+  Result<graph::ImageHandle> declare_merge(graph::FrameGraph& graph, const std::string& prefix,
+                                           const std::vector<graph::ImageHandle>& bands,
+                                           const std::vector<Mat3>& rgb_from_bands,
+                                           const GBuffer& gbuffer);
   // Applies a lens and an image sensor to the picture, for as many pixels as the camera has.
   // terms: kCamera... bits.
   Result<graph::ImageHandle> declare_camera(graph::FrameGraph& graph, const std::string& prefix,
@@ -291,6 +301,8 @@ class Renderer {
   // By terms and number of the sun's maps.
   std::map<std::array<std::uint32_t, 2>, gpu::Pipeline> shafts_;
   gpu::Pipeline shafts_blur_, focus_, shutter_;
+  gpu::Pipeline band_albedo_;
+  std::map<std::uint32_t, gpu::Pipeline> merge_;             // by pictures
   std::map<std::uint32_t, gpu::Pipeline> camera_;            // by terms
   gpu::Sampler tile_sampler_;                                // linear, repeating
   std::map<std::uint32_t, gpu::Pipeline> hidden_pipelines_;  // by view mask

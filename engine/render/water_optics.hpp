@@ -2,6 +2,7 @@
 // linear sRGB channels: 600, 550 and 450 nm. Pure data; any thread.
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "engine/core/math.hpp"
@@ -20,6 +21,13 @@ struct WaterOptics {
   }
 };
 
+// A part of the spectrum.
+struct WaveBand {
+  double first_nm = 550.0, last_nm = 550.0;
+};
+// The means over three parts of the spectrum, from 400 to 700 nm. Measured every 25 nm and linear
+// between; pure water's scattering above 600 nm is extrapolated.
+Result<WaterOptics> jerlov_optics(const std::string& type, const std::array<WaveBand, 3>& bands);
 // The types of scene::kWaterTypes; another name is kBadInput with the list.
 Result<WaterOptics> jerlov_optics(const std::string& type);
 

@@ -14,10 +14,12 @@
 #include "shared/forward_scatter.h"
 #include "shared/lighting.h"
 #include "shared/particles.h"
+#include "shared/shimmer.h"
 
 namespace neritic::render {
 
 struct GBuffer;
+struct ShaftInputs;
 
 class WaterPasses {
  public:
@@ -29,20 +31,38 @@ class WaterPasses {
       graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle hdr,
       graph::ImageHandle scattered, const GBuffer& gbuffer, const ViewSet& views,
       const shared::Lighting& lighting, const scene::ForwardScatter& settings);
+  // The picture behind layers of water that bend sight (shared/shimmer.h). Only where the scene's
+  // column has layers.
+  Result<graph::ImageHandle> declare_shimmer(graph::FrameGraph& graph, const std::string& prefix,
+                                             graph::ImageHandle hdr, const GBuffer& gbuffer,
+                                             const ViewSet& views, const WaterColumn& column,
+                                             double time_s, std::uint64_t seed);
   // Particles over the picture, from far to near. They must live until the graph has run. shutter:
-  // share of the time to the next frame that the exposure lasts.
+  // share of the time to the next frame that the exposure lasts. shafts: of the sun's light, which
+  // particles then stand in; nullptr: none.
   Result<graph::ImageHandle> declare_particles(graph::FrameGraph& graph, const std::string& prefix,
                                                graph::ImageHandle hdr, const GBuffer& gbuffer,
                                                const ViewSet& views,
                                                const shared::Lighting& lighting,
                                                const std::vector<shared::Particle>& particles,
-                                               float shutter);
+                                               float shutter, const ShaftInputs* shafts = nullptr);
 
  private:
   gpu::Device& device_;
   gpu::Pipeline scatter_first_, scatter_down_, scatter_up_, scatter_add_;
-  std::map<std::uint32_t, gpu::Pipeline> particles_;  // by view mask
+  std::map<std::pair<std::uint32_t, std::uint32_t>, gpu::Pipeline> shimmer_;  // layers, waves
+  std::map<std::uint32_t, gpu::Pipeline> particles_;  // by view mask and light
+  gpu::Sampler tile_sampler_;                         // linear, repeating; with shafts
 };
+
+// The column's transitions as a view about the origin sees them at a time. The waves are a sum of
+// kShimmerWaves sines of even slopes, lengths spread evenly in the logarithm, drawn from the seed.
+shared::ShimmerParams shimmer_params(const WaterColumn& column, const Vec3& origin_m, double time_s,
+                                     std::uint64_t seed);
+// Angular frequency of a wave of this number on the transition below `above`, 1/s: between two
+// still waters (Lamb, "Hydrodynamics", art. 231), slowed where the transition is thick: no wave
+// swings faster than the buoyancy frequency (Phillips 1977, section 5.2, the limits joined).
+double internal_wave_s(const SeaWater& above, const WaterLayer& layer, double number_m);
 
 // A level of the forward scatter's pyramid: its size, and its octave in cycles a radian.
 struct ScatterLevel {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "engine/core/intrinsics.hpp"
 #include "engine/core/math.hpp"
@@ -71,7 +72,21 @@ struct Shutter {
   std::uint32_t samples = 8;
 };
 
+// A response to light at a wavelength, per channel.
+struct ResponseRow {
+  double wavelength_nm = 550.0;
+  Vec3 channels{0.0};
+};
+
+// Light in bands of even width from 400 to 700 nm, three of which are shaded at a time, and joined
+// by the camera's response.
+struct Spectrum {
+  std::uint32_t bands = 12;           // 9, 12 or 15
+  std::vector<ResponseRow> response;  // by rising wavelength; empty: the eye's (CIE 1931)
+};
+
 struct CameraTerms {
+  std::optional<Spectrum> spectrum;  // absent: light at 600, 550 and 450 nm
   std::optional<Lens> lens;
   std::optional<Focus> focus;
   std::optional<Shutter> shutter;
@@ -80,7 +95,7 @@ struct CameraTerms {
   double vignette = 0.0;  // times cos^4 in the exponent; 0: none
   bool linear = false;    // the picture before the tone curve too
   bool changes_picture() const {
-    return lens || focus || shutter || sensor || white_balance || vignette > 0.0;
+    return spectrum || lens || focus || shutter || sensor || white_balance || vignette > 0.0;
   }
 };
 

@@ -168,6 +168,7 @@ Result<Scene> load_scene(const std::filesystem::path& path, const SceneOptions& 
         draft.scene.notes.push_back(note);
   draft.scene.models = std::move(loaded.models);
   NERITIC_TRY_STATUS(resolve_water_sources(draft.scene));
+  NERITIC_TRY_STATUS(resolve_water_column(draft.scene));
   NERITIC_TRY_STATUS(resolve_flocks(draft.scene));
   choose_model_lights(draft.scene);
   choose_sampling(draft.scene, options.sonar_quality);

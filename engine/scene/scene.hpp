@@ -93,6 +93,7 @@ struct Water {
   std::optional<Snow> snow = {};
   std::optional<SeaState> waves = {};  // of the surface; absent: flat
   std::optional<Murk> murk = {};
+  std::optional<WaterColumn> column = {};  // temperature, salinity and their layers
   std::vector<BubbleSource> bubbles = {};
   std::vector<SiltSource> silt = {};
 };

@@ -31,7 +31,9 @@ inline constexpr auto kAmbientKeys =
 
 inline constexpr auto kWaterKeys =
     std::to_array<Key>({"type", "scattering", "surface", "forward_scatter", "snow", "waves", "murk",
-                        "bubbles", "silt"});
+                        "bubbles", "silt", "temperature_c", "salinity_psu", "layers"});
+inline constexpr auto kLayerKeys = std::to_array<Key>(
+    {"depth_m", "thickness_m", "temperature_c", "salinity_psu", "slope", "wavelength_m"});
 inline constexpr auto kForwardScatterKeys = std::to_array<Key>({"angle_deg", "levels"});
 inline constexpr auto kSnowKeys = std::to_array<Key>(
     {"density_m3", "diameter_mm", "spread", "range_m", "drift_m_s", "shutter_s"});
@@ -197,7 +199,8 @@ inline constexpr auto kCameraKeys = std::to_array<Key>({"name",
                                                         "sensor",
                                                         "white_balance",
                                                         "vignette",
-                                                        "linear"});
+                                                        "linear",
+                                                        "spectrum"});
 inline constexpr auto kDetailKeys =
     std::to_array<Key>({"resolution", "shadow_size", "cascades", "shadow_samples",
                         "visibility_step", "occlusion_samples", "inscatter_samples", "waves",
@@ -207,6 +210,7 @@ inline constexpr auto kFocusKeys =
     std::to_array<Key>({"distance_m", "f_number", "focal_length_mm", "samples"});
 inline constexpr auto kShutterKeys = std::to_array<Key>({"exposure_s", "readout_s", "samples"});
 inline constexpr auto kLensKeys = std::to_array<Key>({"model", "k", "p"});
+inline constexpr auto kSpectrumKeys = std::to_array<Key>({"bands", "response"});
 inline constexpr auto kImageSensorKeys = std::to_array<Key>(
     {"gain_db", "full_well_e", "read_noise_e", "saturation_ev", "bits", "bayer"});
 

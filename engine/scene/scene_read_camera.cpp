@@ -1,4 +1,5 @@
 // Reads the tables of a camera: lens, sensor, white balance (camera_terms.hpp).
+#include "engine/scene/number_rows.hpp"
 #include "engine/scene/scene_draft.hpp"
 #include "engine/scene/scene_reader.hpp"
 
@@ -71,6 +72,45 @@ ImageSensor read_image_sensor(TableReader& reader) {
   return sensor;
 }
 
+// A file of rows [nm, red, green, blue].
+Spectrum read_spectrum(TableReader& reader) {
+  Spectrum out;
+  out.bands = static_cast<std::uint32_t>(reader.whole("bands", out.bands, 9, 15));
+  if (out.bands % 3 != 0) reader.refuse("bands", "9, 12 or 15");
+  const TomlValue* value = reader.find("response");
+  if (!value || (value->kind == TomlValue::Kind::kString && value->text == "eye")) return out;
+  const std::filesystem::path path = reader.file("response");
+  if (path.empty()) return out;
+  const auto refused = [&](std::string_view found) {
+    reader.refuse("response",
+                  fmt::format("\"eye\", or a .csv file of rows nm, red, green, blue with rising "
+                              "wavelengths from 400 or less to 700 or more and responses in [0, "
+                              "1e6]: {}",
+                              found));
+  };
+  const auto rows = read_rows(path, {4, 4, 1e6, 10000, "four numbers: nm, red, green, blue"});
+  if (!rows.ok()) {
+    reader.fail({rows.error().code, reader.place("response") + ": " + rows.error().message});
+    return out;
+  }
+  Vec3 sum(0.0);
+  for (const NumberRow& numbers : *rows) {
+    const std::vector<double>& row = numbers.values;
+    const bool rises = out.response.empty() || row[0] > out.response.back().wavelength_nm;
+    const bool sound = std::ranges::all_of(row, [](double x) { return x >= 0.0; });
+    if (!rises || !sound) {
+      refused(fmt::format("line {} is none", numbers.line));
+      return out;
+    }
+    out.response.push_back({row[0], {row[1], row[2], row[3]}});
+    sum += out.response.back().channels;
+  }
+  if (out.response.empty() || out.response.front().wavelength_nm > 400.0 ||
+      out.response.back().wavelength_nm < 700.0 || !(std::min({sum.x, sum.y, sum.z}) > 0.0))
+    refused("it covers less, or a channel has none");
+  return out;
+}
+
 WhiteBalance read_white_balance(TableReader& reader) {
   const TomlValue* value = reader.find("white_balance");
   if (value->kind == TomlValue::Kind::kString) {
@@ -85,6 +125,7 @@ WhiteBalance read_white_balance(TableReader& reader) {
 
 void read_camera_terms(TableReader& reader, Camera& camera) {
   CameraTerms& terms = camera.terms;
+  terms.spectrum = read_term<Spectrum>(reader, "spectrum", kSpectrumKeys, read_spectrum);
   terms.lens = read_term<Lens>(reader, "lens", kLensKeys, read_lens);
   const auto port = read_term<Port>(reader, "port", kPortKeys, read_port);
   if (port) {

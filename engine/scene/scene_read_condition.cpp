@@ -48,7 +48,8 @@ std::optional<Condition> read_condition(TableReader& parent) {
     Condition condition;
     read_effects(reader, condition);
     condition.acts = reader.flag("acts", condition.acts);
-    condition.water_c = reader.number("water_c", condition.water_c, {-2, 40, false, false, "C"});
+    if (reader.has("water_c"))
+      condition.water_c = reader.number("water_c", 12.0, {-2, 40, false, false, "C"});
     condition.fat_share = reader.number("fat_share", condition.fat_share, {0.03, 0.6});
     if (reader.has("oxygen_tolerance"))
       condition.oxygen_tolerance = reader.number("oxygen_tolerance", 0.0, {-5, 5});

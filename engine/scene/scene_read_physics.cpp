@@ -37,7 +37,9 @@ constexpr CurrentKeysOf kCurrentKinds[] = {
     {"grid", {"file", "origin_m", "spacing_m", "start_s", "interval_s"}}};
 constexpr auto kCurrentNames = std::to_array<Key>({"uniform", "power_law", "linear", "grid"});
 
-Result<Physics> read_physics_table(const SceneSource& source, const TomlValue& table) {
+// column: of the scene's water, or nullptr.
+Result<Physics> read_physics_table(const SceneSource& source, const TomlValue& table,
+                                   const WaterColumn* column) {
   TableReader reader(source, table, "physics", kPhysicsKeys);
   Physics physics;
   physics.rate_hz = reader.number("rate_hz", physics.rate_hz, {60, 1000, false, false, "hertz"});
@@ -47,6 +49,7 @@ Result<Physics> read_physics_table(const SceneSource& source, const TomlValue& t
   for (const Key key : {"rate_hz", "integrator"})
     if (reader.has("max_error_m") && reader.has(key))
       reader.refuse(key, "no such key beside max_error_m");
+  if (column) physics.water_kg_m3 = column->density_kg_m3(0.0);
   physics.water_kg_m3 =
       reader.number("water_kg_m3", physics.water_kg_m3, {900, 1300, false, false, "kg/m^3"});
   physics.altitude_m =
@@ -267,7 +270,11 @@ class VehiclePhysicsReader {
 Status read_physics(SceneDraft& draft, const SceneSource& source, const TomlValue* physics,
                     const TomlValue* current) {
   if (physics) {
-    NERITIC_TRY(draft.scene.physics, read_physics_table(source, *physics));
+    NERITIC_TRY(draft.scene.physics,
+                read_physics_table(source, *physics,
+                                   draft.scene.water && draft.scene.water->column
+                                       ? &*draft.scene.water->column
+                                       : nullptr));
   }
   if (!current) return {};
   if (!physics)

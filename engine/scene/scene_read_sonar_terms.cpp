@@ -39,6 +39,7 @@ SonarWater read_sonar_water(TableReader& reader) {
     water.depth_m = reader.number("depth_m", 0.0, {0, 12000, false, false, "metres"});
   if (reader.has("sound_speed_m_s"))
     water.sound_speed_m_s = reader.number("sound_speed_m_s", 1500.0, kSpeed);
+  water.own = reader.has("temperature_c") || reader.has("salinity_psu") || water.sound_speed_m_s;
   return water;
 }
 
@@ -188,7 +189,8 @@ SonarGhosts read_ghosts(TableReader& reader) {
 
 SonarProfile read_profile(TableReader& reader) {
   SonarProfile profile;
-  profile.table = read_table(reader, "profile", kSpeedTable);
+  profile.layers = is_text(reader.find("profile"), "layers");
+  if (!profile.layers) profile.table = read_table(reader, "profile", kSpeedTable);
   if (!reader.has("profile")) reader.refuse("profile", table_text(kSpeedTable));
   profile.bent =
       reader.choice("rays", "straight", std::to_array<Key>({"straight", "bent"})) == "bent";

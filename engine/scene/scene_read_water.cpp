@@ -1,4 +1,6 @@
 // Reads the terms under [water], each a table: what is not named is not modelled.
+#include <set>
+
 #include "engine/core/refusal.hpp"
 #include "engine/scene/scene_draft.hpp"
 #include "engine/scene/scene_reader.hpp"
@@ -8,6 +10,8 @@ namespace {
 
 constexpr Interval kBedDepth{-kFarthest_m, kFarthest_m, false, false, "metres"};
 constexpr Interval kReach{0, 1000, true, false, "metres"};
+constexpr Interval kWaterWarmth{-2, 40, false, false, "degrees Celsius"};
+constexpr Interval kWaterSalt{0, 42, false, false, "psu"};
 constexpr Interval kSomeSeconds{0, 1000, false, false, "seconds"};
 
 ForwardScatter read_forward_scatter(TableReader& reader) {
@@ -80,7 +84,88 @@ Murk read_murk(TableReader& reader) {
   return out;
 }
 
+WaterLayer read_layer(TableReader& reader, const SeaWater& above) {
+  WaterLayer out;
+  if (!reader.has("depth_m")) reader.refuse_table("no depth_m", "depth_m, in metres");
+  out.depth_m = reader.number("depth_m", 0.0, {0, 12000, false, false, "metres"});
+  out.thickness_m =
+      reader.number("thickness_m", out.thickness_m, {0.01, 1000, false, false, "metres"});
+  out.temperature_c = reader.number("temperature_c", above.temperature_c, kWaterWarmth);
+  out.salinity_psu = reader.number("salinity_psu", above.salinity_psu, kWaterSalt);
+  out.slope = reader.number("slope", out.slope, {0, 0.5});
+  const auto lengths = reader.numbers("wavelength_m", {2}, {0.02, 1000, false, false, "metres"});
+  if (lengths.size() == 2) {
+    out.shortest_m = lengths[0];
+    out.longest_m = lengths[1];
+    if (!(lengths[0] < lengths[1]))
+      reader.refuse("wavelength_m", "[shortest, longest], the first below the second");
+  }
+  return out;
+}
+
+// Layers from the surface down, none lighter than the one above, which would turn over.
+std::optional<WaterColumn> read_column(TableReader& reader) {
+  const std::vector<TomlValue>& tables = reader.tables("layers");
+  if (tables.empty() && !reader.has("temperature_c") && !reader.has("salinity_psu"))
+    return std::nullopt;
+  WaterColumn out;
+  out.temperature_c = reader.number("temperature_c", out.temperature_c, kWaterWarmth);
+  out.salinity_psu = reader.number("salinity_psu", out.salinity_psu, kWaterSalt);
+  if (tables.size() > out.layer.size())
+    reader.refuse("layers", fmt::format("at most {} tables", out.layer.size()));
+  SeaWater above{out.temperature_c, out.salinity_psu};
+  double depth_m = -1.0;
+  for (std::size_t i = 0; i < tables.size() && reader.ok(); ++i) {
+    TableReader one(reader.source(), tables[i], fmt::format("{}[{}]", reader.path("layers"), i),
+                    kLayerKeys);
+    const WaterLayer layer = read_layer(one, above);
+    const SeaWater below{layer.temperature_c, layer.salinity_psu};
+    if (!(layer.depth_m > depth_m)) one.refuse("depth_m", "a depth below that of the layer above");
+    const double lighter_kg_m3 = sea_density_kg_m3(above) - sea_density_kg_m3(below);
+    if (lighter_kg_m3 > 0.0)
+      one.refuse_table(fmt::format("water {:.3f} kg/m^3 lighter than that above", lighter_kg_m3),
+                       "colder or saltier water");
+    if (!one.ok()) reader.fail(one.status().error());
+    out.layer[out.count++] = layer;
+    above = below;
+    depth_m = layer.depth_m;
+  }
+  return out;
+}
+
+// The column's speed of sound as rows, dense about each transition.
+SonarTable speed_rows(const WaterColumn& column) {
+  std::set<double> depths{0.0};
+  for (double depth_m = 25.0; depth_m < 12000.0; depth_m *= 1.25) depths.insert(depth_m);
+  for (const WaterLayer& layer : column.layers())
+    for (int i = -16; i <= 16; ++i) depths.insert(layer.depth_m + 0.25 * i * layer.sigma_m());
+  SonarTable out;
+  for (const double depth_m : depths)
+    if (depth_m >= 0.0 && (out.empty() || depth_m - out.back().x > 1e-4))
+      out.push_back({depth_m, column.sound_speed_m_s(depth_m)});
+  return out;
+}
+
 }  // namespace
+
+Status resolve_water_column(Scene& scene) {
+  const WaterColumn* column = scene.water && scene.water->column ? &*scene.water->column : nullptr;
+  for (Sonar& sonar : scene.sonars) {
+    if (column && !sonar.terms.water.own) sonar.terms.water.column = *column;
+    if (!sonar.terms.profile || !sonar.terms.profile->layers) continue;
+    if (!column)
+      return refusal(fmt::format("{}: {}: sound_speed.profile", scene.path, sonar.name),
+                     "\"layers\" without any", "[[water.layers]] in the scene, or a table");
+    sonar.terms.profile->table = speed_rows(*column);
+  }
+  if (column && !scene.acoustics && !scene.modems.empty()) {
+    scene.acoustics.emplace();
+    scene.acoustics->temperature_c = column->temperature_c;
+    scene.acoustics->salinity_psu = column->salinity_psu;
+    scene.acoustics->profile = speed_rows(*column);
+  }
+  return {};
+}
 
 void read_water_terms(TableReader& reader, Water& water) {
   water.forward_scatter = read_term<ForwardScatter>(reader, "forward_scatter", kForwardScatterKeys,
@@ -88,6 +173,7 @@ void read_water_terms(TableReader& reader, Water& water) {
   water.snow = read_term<Snow>(reader, "snow", kSnowKeys, read_snow);
   water.waves = read_term<SeaState>(reader, "waves", kWavesKeys, read_waves);
   water.murk = read_term<Murk>(reader, "murk", kMurkKeys, read_murk);
+  water.column = read_column(reader);
   const auto each = [&](Key key, KeyList keys, auto read, auto& out) {
     std::size_t i = 0;
     for (const TomlValue& table : reader.tables(key)) {

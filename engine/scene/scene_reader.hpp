@@ -90,6 +90,8 @@ Result<Ambient> read_ambient(const SceneSource& source, const TomlValue& table);
 // places.
 void read_water_terms(TableReader& reader, Water& water);
 Status resolve_water_sources(Scene& scene);
+// Gives the water's layers to the sonars and modems that name no water of their own.
+Status resolve_water_column(Scene& scene);
 
 // The term of the table under key, where there is one; its fault becomes the parent's.
 template <class Term, class Read>

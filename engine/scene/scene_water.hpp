@@ -8,6 +8,7 @@
 
 #include "engine/core/math.hpp"
 #include "engine/core/sea_waves.hpp"
+#include "engine/core/water_column.hpp"
 
 namespace neritic::scene {
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/core/math.hpp"
+#include "engine/core/water_column.hpp"
 
 namespace neritic::scene {
 
@@ -25,6 +26,12 @@ struct SonarWater {
   double temperature_c = 10.0, salinity_psu = 35.0, ph = 8.0;
   std::optional<double> depth_m;
   std::optional<double> sound_speed_m_s;  // absent: Mackenzie's from the above
+  // The scene's layers, in place of temperature and salinity; absent where the sonar names its own.
+  std::optional<WaterColumn> column = {};
+  bool own = false;  // names temperature, salinity or sound speed
+  SeaWater at(double depth_below_m) const {
+    return column ? column->at(depth_below_m) : SeaWater{temperature_c, salinity_psu};
+  }
   bool operator==(const SonarWater&) const = default;
 };
 
@@ -117,6 +124,7 @@ struct SonarGhosts {
 // Sound speed over depth. Absent: constant.
 struct SonarProfile {
   SonarTable table;   // depth in metres, m/s
+  bool layers = false;  // the table is that of the scene's layers
   bool bent = false;  // rays bend; else straight rays, only time differs
   bool operator==(const SonarProfile&) const = default;
 };

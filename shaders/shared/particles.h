@@ -33,6 +33,12 @@ NERITIC_CONST uint kParticleKind = 2;      // and seed
 NERITIC_CONST uint kParticleViews = 0;
 NERITIC_CONST uint kParticleLighting = 1;
 NERITIC_CONST uint kParticleDepth = 2;
+// Where the scene names light shafts, which light particles too.
+NERITIC_CONST uint kParticleSun = 3;  // VisibilityParams
+NERITIC_CONST uint kParticleCascades = 4;
+NERITIC_CONST uint kParticleCaustics = 5;
+// Specialisation constant beside kSpecBubbles and kSpecParticleMultiview (shared/bubble.h).
+NERITIC_CONST uint kSpecParticleCascades = 2;
 
 // A lens of this opening (m), focussed at this distance (m), blurs what is nearer or farther: a
 // wide lens of 11 mm at f/2.8.

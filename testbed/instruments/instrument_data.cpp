@@ -63,7 +63,8 @@ void read_body(const PhysicsHuman& human, const HumanPhysics& state, hud::DiveDa
   if (human.body.jacket.capacity_m3 > 0.0) {
     out.jacket_full_m3 = human.body.jacket.capacity_m3;
     out.jacket_m3 = diver::read_gas(human.body, diver).jacket_m3;
-    out.lift_n = human.body.water_kg_m3 * diver::kGravity_m_s2 * out.jacket_m3;
+    out.lift_n = human.body.density_kg_m3(diver.root.position_ned_m.z) * diver::kGravity_m_s2 *
+                 out.jacket_m3;
     out.buttons = diver.held.buttons;
   }
   out.net_weight_n = diver::net_weight_n(human.body, diver);

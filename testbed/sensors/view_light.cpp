@@ -92,6 +92,7 @@ Status declare_shafts(const FrameParts& frame, const std::string& prefix, const 
                    static_cast<float>(scene.sun->shafts->reach_m)};
   NERITIC_TRY(light.shafts,
               frame.renderer.declare_shafts(frame.graph, prefix, g, views, lighting, inputs));
+  light.shaft_inputs = inputs;
   lighting.terms |= shared::kLightShafts;
   return {};
 }

@@ -4,6 +4,7 @@
 
 #include "engine/core/check.hpp"
 #include "engine/core/refusal.hpp"
+#include "engine/render/bands.hpp"
 #include "engine/render/lighting.hpp"
 #include "engine/render/sea_waves.hpp"
 #include "testbed/sensors/session.hpp"
@@ -28,12 +29,19 @@ double mesh_error_px(const scene::PictureDetail& detail) {
 }
 
 // Gains that make a white card at the camera neutral, as the water leaves daylight there.
-Vec3f automatic_white(const shared::Lighting& lighting) {
+Result<Vec3f> automatic_white(const shared::Lighting& lighting, const scene::Water* water,
+                              const scene::CameraTerms& terms) {
   if (!(lighting.terms & shared::kLightSun)) return Vec3f(1.0f);
-  const bool water = (lighting.terms & shared::kLightWater) != 0;
   const float depth_m = water ? std::max(0.0f, lighting.origin_depth_m) : 0.0f;
   Vec3f light = lighting.surface_irradiance;
-  for (int i = 0; i < 3; ++i) light[i] *= std::exp(-lighting.diffuse_attenuation[i] * depth_m);
+  if (water && terms.spectrum) {
+    NERITIC_TRY(const Vec3 white,
+                render::white_under_water(water->type, render::make_bands(*terms.spectrum),
+                                          double(depth_m)));
+    light *= glm::max(Vec3f(white), Vec3f(1e-30f));
+  } else {
+    for (int i = 0; i < 3; ++i) light[i] *= std::exp(-lighting.diffuse_attenuation[i] * depth_m);
+  }
   if (!(light.y > 0.0f)) return Vec3f(1.0f);
   return glm::clamp(Vec3f(light.y) / glm::max(light, Vec3f(1e-30f)), 0.25f, 4.0f);
 }
@@ -83,8 +91,12 @@ Result<CameraHdr> declare_camera(const FrameParts& frame, const std::string& pre
   CameraHdr out;
   if (terms.white_balance) {
     bits |= shared::kCameraWhite;
-    out.white = terms.white_balance->automatic ? automatic_white(lighting)
-                                               : Vec3f(terms.white_balance->gains);
+    out.white = Vec3f(terms.white_balance->gains);
+    if (terms.white_balance->automatic) {
+      NERITIC_TRY(
+          out.white,
+          automatic_white(lighting, frame.scene.water ? &*frame.scene.water : nullptr, terms));
+    }
     params.white = out.white;
   }
   NERITIC_TRY(out.hdr, frame.renderer.declare_camera(frame.graph, prefix, hdr, params, bits,
@@ -124,17 +136,13 @@ Result<graph::ImageHandle> declare_focus_and_shutter(const FrameParts& frame,
   return hdr;
 }
 
-// The tonemapped picture of a surface G-buffer.
-Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::string& prefix,
-                                         const render::GBuffer& g, const render::ViewSet& views,
-                                         const render::DrawList& draws, const ViewsRequest& request,
-                                         ViewsWork& work) {
+// The picture of the scene in its light and its water, before the camera.
+Result<graph::ImageHandle> declare_lit(const FrameParts& frame, const std::string& prefix,
+                                       const render::GBuffer& g, const render::ViewSet& views,
+                                       const render::DrawList& draws, const ViewsRequest& request,
+                                       ViewsWork& work, const shared::Lighting& lighting,
+                                       const render::LightImages& light) {
   const scene::PictureDetail& detail = request.detail;
-  NERITIC_TRY(shared::Lighting lighting,
-              render::make_lighting(frame.scene, frame.state, views.origin_m(), request.exposure,
-                                    frame.gpu_scene.has_emission()));
-  NERITIC_TRY(const render::LightImages light,
-              declare_light(frame, prefix, g, views, draws, detail, work, lighting));
   graph::ImageHandle scattered;
   std::optional<shared::Waves> waves;
   if (lighting.terms & shared::kLightWaves) {
@@ -162,15 +170,61 @@ Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::str
     NERITIC_TRY(hdr, frame.renderer.water().declare_forward_scatter(
                          frame.graph, prefix, hdr, scattered, g, views, lighting, scatter));
   }
+  if (frame.scene.water && frame.scene.water->column && frame.scene.water->column->count > 0) {
+    NERITIC_TRY(hdr, frame.renderer.water().declare_shimmer(frame.graph, prefix, hdr, g, views,
+                                                            *frame.scene.water->column,
+                                                            frame.state.time_s, frame.scene.seed));
+  }
   if (render::has_particles(frame.scene)) {
     const double time_s = frame.state.time_s, step_s = frame.state.next_time_s - time_s;
     work.particles = render::view_particles(frame.motion, frame.snow, frame.scene.seed, views,
                                             time_s, detail.particles);
     const double shutter = step_s > 0.0 ? work.particles.shutter_s / step_s : 0.0;
-    NERITIC_TRY(hdr, frame.renderer.water().declare_particles(frame.graph, prefix, hdr, g, views,
-                                                              lighting, work.particles.particles,
-                                                              static_cast<float>(shutter)));
+    NERITIC_TRY(
+        hdr, frame.renderer.water().declare_particles(
+                 frame.graph, prefix, hdr, g, views, lighting, work.particles.particles,
+                 static_cast<float>(shutter), light.shaft_inputs ? &*light.shaft_inputs : nullptr));
   }
+  return hdr;
+}
+
+// The same in bands, three at a time.
+Result<graph::ImageHandle> declare_spectrum(const FrameParts& frame, const std::string& prefix,
+                                            const render::GBuffer& g, const render::ViewSet& views,
+                                            const render::DrawList& draws,
+                                            const ViewsRequest& request, ViewsWork& work,
+                                            const shared::Lighting& lighting,
+                                            const render::LightImages& light) {
+  const render::BandSet bands = render::make_bands(*request.camera->terms.spectrum);
+  NERITIC_TRY(const render::GBuffer reflectance,
+              frame.renderer.declare_band_albedo(frame.graph, prefix, g, bands.bands_from_rgb));
+  const std::string water = frame.scene.water ? frame.scene.water->type : std::string();
+  std::vector<graph::ImageHandle> pictures;
+  for (std::size_t i = 0; i < bands.pictures.size(); ++i) {
+    NERITIC_TRY(const shared::Lighting lit, render::band_lighting(lighting, water, bands, i));
+    NERITIC_TRY(const graph::ImageHandle picture,
+                declare_lit(frame, fmt::format("{}bands {} ", prefix, i + 1), reflectance, views,
+                            draws, request, work, lit, light));
+    pictures.push_back(picture);
+  }
+  return frame.renderer.declare_merge(frame.graph, prefix, pictures, bands.rgb_from_bands, g);
+}
+
+// The tonemapped picture of a surface G-buffer.
+Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::string& prefix,
+                                         const render::GBuffer& g, const render::ViewSet& views,
+                                         const render::DrawList& draws, const ViewsRequest& request,
+                                         ViewsWork& work) {
+  const scene::PictureDetail& detail = request.detail;
+  NERITIC_TRY(shared::Lighting lighting,
+              render::make_lighting(frame.scene, frame.state, views.origin_m(), request.exposure,
+                                    frame.gpu_scene.has_emission()));
+  NERITIC_TRY(const render::LightImages light,
+              declare_light(frame, prefix, g, views, draws, detail, work, lighting));
+  NERITIC_TRY(graph::ImageHandle hdr,
+              request.camera && request.camera->terms.spectrum
+                  ? declare_spectrum(frame, prefix, g, views, draws, request, work, lighting, light)
+                  : declare_lit(frame, prefix, g, views, draws, request, work, lighting, light));
   std::uint32_t width = g.width, height = g.height;
   if (request.camera) {
     NERITIC_TRY(hdr, declare_focus_and_shutter(frame, prefix, hdr, g, views.views.front().near_m,

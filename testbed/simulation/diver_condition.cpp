@@ -79,6 +79,14 @@ diver::ConditionInputs inputs_of(const PhysicsHuman& human, const diver::GasMix*
   return in;
 }
 
+// In water as warm as its layers have it at the diver's depth.
+diver::ConditionSettings settings_at(const PhysicsHuman& human, const HumanPhysics& diver) {
+  diver::ConditionSettings settings = human.condition->settings;
+  if (human.body.column && !human.condition->own_water)
+    settings.cold.water_c = human.body.column->at(diver.human.root.position_ned_m.z).temperature_c;
+  return settings;
+}
+
 }  // namespace
 
 PhysicsCondition physics_condition(const scene::Condition& said, const diver::DiverFile& file) {
@@ -90,7 +98,8 @@ PhysicsCondition physics_condition(const scene::Condition& said, const diver::Di
     for (std::size_t bit = 0; bit < diver::kEffects; ++bit)
       if (name == diver::name_of_effect(bit)) settings.effects |= std::uint64_t{1} << bit;
   const diver::BodyParameters& body = file.parameters;
-  settings.cold.water_c = said.water_c;
+  settings.cold.water_c = said.water_c.value_or(settings.cold.water_c);
+  out.own_water = said.water_c.has_value();
   settings.cold.mass_kg = body.build.mass_kg;
   settings.cold.height_m = body.build.height_m;
   settings.cold.suit_m = body.gear.suit ? body.gear.suit->thickness_m : 0.0;
@@ -125,7 +134,7 @@ void start_condition(const PhysicsHuman& human, PhysicsState& state, const Human
   diver::ConditionInputs in = inputs_of(human, nullptr, 0.0, start);
   in.breath.inspired_share = diver::kAir.oxygen;
   in.breath.ambient_pa = human.body.surface_pa;
-  state.conditions()[human.condition->place] = diver::rested(human.condition->settings, in);
+  state.conditions()[human.condition->place] = diver::rested(settings_at(human, start), in);
 }
 
 Ability ability_of(const PhysicsHuman& human, const PhysicsState& before) {
@@ -193,8 +202,8 @@ void step_condition(const PhysicsHuman& human, const diver::GasMix* borrowed, do
   const PhysicsCondition& condition = *human.condition;
   diver::ConditionState& state = after.conditions()[condition.place];
   const double shiver_w = condition.acts ? state.cold.shiver_w : 0.0;
-  diver::step_condition(condition.settings, inputs_of(human, borrowed, shiver_w, diver), dt_s,
-                        state);
+  diver::step_condition(settings_at(human, diver), inputs_of(human, borrowed, shiver_w, diver),
+                        dt_s, state);
 }
 
 void settle_gas(std::span<const PhysicsHuman> humans, std::size_t index, double taken_moles,

@@ -99,6 +99,7 @@ Result<PhysicsHuman> physics_human(const scene::Scene& scene, std::size_t index)
               diver::read_diver(object.human->file, scene.physics->water_kg_m3,
                                 1e5 * diver::surface_bar_at(scene.physics->altitude_m)));
   NERITIC_TRY(human.body, diver::make_body(human.file.parameters));
+  if (scene.water) human.body.column = scene.water->column;
   NERITIC_TRY(diver::DiveComputer computer, diver::DiveComputer::create(human.file.computer));
   human.computer = std::make_unique<const diver::DiveComputer>(std::move(computer));
   if (object.human->swim) {

@@ -32,6 +32,7 @@ DrawnJoints drawn_joints_of(const scene::Model& model, std::string_view& missing
 struct PhysicsCondition {
   diver::ConditionSettings settings;
   bool acts = true;
+  bool own_water = false;  // its temperature is named, rather than that of the water's layers
   std::size_t place = 0;  // in PhysicsState::conditions()
 };
 struct PhysicsRegulator {

@@ -206,6 +206,7 @@ class PhysicsWorld {
   Things things_;
   Tethers tethers_;
   double water_kg_m3_ = 1028.0;
+  std::optional<WaterColumn> column_;  // the density of layers, where the scene names them
   bool washes_ = false;  // a vehicle names its wash
 };
 

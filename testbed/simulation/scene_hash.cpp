@@ -21,6 +21,7 @@ class SceneHash {
     const scene::Physics& physics = *scene.physics;
     text(physics.integrator);
     numbers(physics.rate_hz, physics.max_error_m, physics.water_kg_m3, physics.altitude_m);
+    if (scene.water && scene.water->column) add(*scene.water->column);
     number(scene.current.has_value());
     if (scene.current) NERITIC_TRY_STATUS(add(*scene.current));
     number(scene.objects.size());
@@ -66,6 +67,13 @@ class SceneHash {
     return file(c.file);
   }
 
+  void add(const WaterColumn& column) {
+    text("water column");
+    numbers(column.temperature_c, column.salinity_psu);
+    number(column.count);
+    for (const WaterLayer& layer : column.layers())
+      numbers(layer.depth_m, layer.thickness_m, layer.temperature_c, layer.salinity_psu);
+  }
   void add(const scene::Acoustics& water) {
     text("acoustics");
     numbers(water.temperature_c, water.salinity_psu, water.ph, water.spreading, water.wind_m_s,
@@ -210,7 +218,8 @@ class SceneHash {
     number(condition.effects.size());
     for (const std::string& effect : condition.effects) text(effect);
     number(condition.acts);
-    numbers(condition.water_c, condition.fat_share, condition.oxygen_tolerance.value_or(-1e9));
+    numbers(condition.water_c.value_or(12.0), condition.fat_share,
+            condition.oxygen_tolerance.value_or(-1e9));
   }
   void add(const scene::Regulator& regulator) {
     text("regulator"), text(regulator.donor);

@@ -21,6 +21,7 @@ constexpr double kReachShare = 0.62;
 
 Result<Things> Things::create(const scene::Scene& scene, const Movers& movers) {
   Things out;
+  if (scene.water) out.column_ = scene.water->column;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const scene::Object& object = scene.objects[i];
     const auto add = [&](OwnerSort sort, int owner, const scene::Grip& grip) {
@@ -201,7 +202,8 @@ void Things::pull(std::size_t index, std::span<const PhysicsHuman> humans, const
   const ThingState& state = after.things()[index];
   ObjectState& object = after.objects()[thing.object];
   sim::Held held{on_body_m(grips_[state.holder - 1], humans, after),
-                 fallen(thing, object.motion.velocity_m_s, current_m_s, water_kg_m3, dt_s,
+                 fallen(thing, object.motion.velocity_m_s, current_m_s,
+                        density_at(object.motion.pose.position_m.y, water_kg_m3), dt_s,
                         wet_share(thing, object.motion.pose.position_m.y)),
                  thing.moving_kg};
   const Vec3 impulse = sim::grip_impulse(body.inverse_mass, body.free, held);
@@ -232,7 +234,8 @@ void Things::finish(std::span<const PhysicsHuman> humans, const sim::StaticWorld
       continue;
     }
     const Quat& q = motion.pose.rotation;
-    const Vec3 velocity = fallen(thing, motion.velocity_m_s, current_m_s[i], water_kg_m3, dt_s,
+    const Vec3 velocity = fallen(thing, motion.velocity_m_s, current_m_s[i],
+                                 density_at(motion.pose.position_m.y, water_kg_m3), dt_s,
                                  wet_share(thing, motion.pose.position_m.y));
     const sim::Twist twist{glm::conjugate(q) * velocity, Vec3(0.0)};
     const sim::BodyMotion moved =

@@ -66,10 +66,14 @@ class Things {
               sim::ContactMemory& memory, PhysicsState& after) const;
 
  private:
+  double density_at(double height_m, double otherwise_kg_m3) const {
+    return column_ ? column_->density_kg_m3(-height_m) : otherwise_kg_m3;
+  }
   Vec3 on_body_m(const PhysicsGrip& grip, std::span<const PhysicsHuman> humans,
                  const PhysicsState& state) const;
 
   std::vector<PhysicsThing> things_;
+  std::optional<WaterColumn> column_;  // whose density carries them, where it is named
   std::vector<PhysicsGrip> grips_;
 };
 

@@ -118,6 +118,14 @@ rov::Inputs PhysicsWorld::acting_on(const PhysicsVehicle& vehicle, const Vehicle
   acting.tether_anchor_ned_m = vehicle.tether_anchor_ned_m;
   acting.failed_thrusters = failed_thrusters(vehicle, inputs, state);
   apply_surface(vehicle.vehicle, vehicle.kind.top_m, vehicle.kind.bottom_m, state.body, acting);
+  if (column_) {
+    // The vehicle's buoyancy is that in water of the scene's density.
+    const double more = column_->density_kg_m3(state.body.position_ned_m.z) / water_kg_m3_ - 1.0;
+    const Vec3 lift_n =
+        glm::conjugate(state.body.attitude) * Vec3(0.0, 0.0, -more * vehicle.vehicle.buoyancy_n);
+    acting.wrench =
+        acting.wrench + rov::vec6(lift_n, glm::cross(vehicle.vehicle.buoyancy_centre_m, lift_n));
+  }
   if (vehicle.wash) add_ground_effect(vehicle, rays(), state.body, acting);
   return acting;
 }

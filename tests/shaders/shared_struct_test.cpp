@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "shaders.hpp"
+#include "shared/bands.h"
 #include "shared/camera.h"
 #include "shared/caustics.h"
 #include "shared/exposure.h"
@@ -20,6 +21,7 @@
 #include "shared/particles.h"
 #include "shared/raster.h"
 #include "shared/shafts.h"
+#include "shared/shimmer.h"
 #include "shared/sonar.h"
 #include "shared/sonar_echo.h"
 #include "shared/sonar_fan.h"
@@ -127,6 +129,13 @@ const std::map<std::string, Offsets>& shared_structs() {
       {"ScatterPush",
        {MEMBER(ScatterPush, scattering), MEMBER(ScatterPush, high_cycles_rad),
         MEMBER(ScatterPush, low_cycles_rad), MEMBER(ScatterPush, angle_rad)}},
+      {"BandParams", {MEMBER(BandParams, rows)}},
+      {"ShimmerWave",
+       {MEMBER(ShimmerWave, number_m), MEMBER(ShimmerWave, slope), MEMBER(ShimmerWave, angle_rad)}},
+      {"ShimmerLayer",
+       {MEMBER(ShimmerLayer, height_m), MEMBER(ShimmerLayer, sigma_m), MEMBER(ShimmerLayer, bend),
+        MEMBER(ShimmerLayer, waves)}},
+      {"ShimmerParams", {MEMBER(ShimmerParams, layers)}},
       {"ShaftParams", {MEMBER(ShaftParams, samples), MEMBER(ShaftParams, reach_m)}},
       {"FocusParams",
        {MEMBER(FocusParams, near_m), MEMBER(FocusParams, focus_m), MEMBER(FocusParams, opening_px),
