@@ -87,7 +87,9 @@ void main() {
   // What stands before the layers hides nothing that they bend, and nearer things move less.
   float there_m = length_at(ivec3(nearest, at.z), near_m, stretch);
   shift *= clamp((1.0 - crossing_m / there_m) / max(1.0 - crossing_m / length_m, 1e-3), 0.0, 1.0);
-  from = clamp(vec2(at.xy) + shift, vec2(0.0), vec2(size - 1));
+  // What lies beyond the picture's edge is mirrored at it: clamped it would show as streaks.
+  vec2 last = vec2(size - 1);
+  from = clamp(last - abs(last - abs(vec2(at.xy) + shift)), vec2(0.0), last);
   vec2 low = floor(from), part = from - low;
   ivec2 i = ivec2(low);
   imageStore(out_image, at,
