@@ -46,6 +46,13 @@ void RunClock::wait_until(TimeNs run_ns) {
   host_.wait_until(host_.now() + static_cast<TimeNs>(host_wait_ns) + 1);
 }
 
+TimeNs RunClock::host_at(TimeNs run_ns) {
+  const std::scoped_lock lock(mutex_);
+  const TimeNs host_ns = host_.now();
+  const TimeNs ago_ns = at_locked(host_ns) - run_ns;
+  return host_ns - static_cast<TimeNs>(static_cast<double>(ago_ns) / speed_);
+}
+
 void RunClock::set_speed(double speed) {
   const std::scoped_lock lock(mutex_);
   rebase();

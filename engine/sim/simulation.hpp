@@ -68,7 +68,7 @@ class Simulation {
         step_(step_of<State, Inputs>(std::move(step))),
         apply_(std::move(apply)),
         inputs_(inputs),
-        source_({state, 0, 0.0, 0, state_hash(0, state)}),
+        source_({state, 0, 0.0, 0, 0, state_hash(0, state)}),
         inbox_(std::move(inbox)) {
     NERITIC_CHECK(options.step_s > 0.0 && options.step_s <= kMaxStep_s, "step {} s",
                   options.step_s);
@@ -99,7 +99,15 @@ class Simulation {
   // Lock-step: so many steps now. Not while the thread runs.
   void advance(std::uint64_t steps) {
     check_idle();
-    for (std::uint64_t i = 0; i < steps; ++i) step_once(simulated_ns(source_.newest().step + 1));
+    for (std::uint64_t i = 0; i < steps; ++i) {
+      const TimeNs due_ns = lock_step_ns(source_.newest().step + 1);
+      step_once(due_ns, due_ns);
+    }
+  }
+  // Lock-step at the host's pace: its time when the scene's was 0. 0, the default: simulated time.
+  void set_host_zero(TimeNs host_ns) {
+    check_idle();
+    host_zero_ns_ = host_ns;
   }
 
   // No step after the one of that number: time stands still there. Not while the thread runs.
@@ -116,7 +124,8 @@ class Simulation {
     NERITIC_CHECK(all_finite(state) && all_finite(inputs), "the restored state is not finite");
     (void)inbox_->drain();
     inputs_ = inputs;
-    source_.restart({state, step, static_cast<double>(step) * options_.step_s, simulated_ns(step),
+    const TimeNs due_ns = lock_step_ns(step);
+    source_.restart({state, step, static_cast<double>(step) * options_.step_s, due_ns, due_ns,
                      state_hash(step, state)});
     begin_log();
   }
@@ -129,10 +138,11 @@ class Simulation {
                   rate_hz);
     Snapshot<State> now = source_.newest();
     now.due_ns = clock.now();  // blending starts from here
+    now.host_ns = clock.host_at(now.due_ns);
     source_.restart(now);
     const StepPacer pacer(rate_hz, options_.max_catch_up, now.due_ns);
-    thread_ =
-        std::make_unique<StepThread>(clock, pacer, [this](TimeNs due_ns) { step_once(due_ns); });
+    thread_ = std::make_unique<StepThread>(
+        clock, pacer, [this, &clock](TimeNs due_ns) { step_once(due_ns, clock.host_at(due_ns)); });
   }
   void stop() {
     if (!thread_) return;
@@ -163,8 +173,8 @@ class Simulation {
  private:
   void check_idle() const { NERITIC_CHECK(!thread_, "the simulation's thread runs"); }
 
-  TimeNs simulated_ns(std::uint64_t step) const {
-    return std::llround(static_cast<double>(step) * options_.step_s * 1e9);
+  TimeNs lock_step_ns(std::uint64_t step) const {
+    return host_zero_ns_ + std::llround(static_cast<double>(step) * options_.step_s * 1e9);
   }
 
   void begin_log() {
@@ -181,7 +191,7 @@ class Simulation {
     }
   }
 
-  void step_once(TimeNs due_ns) {
+  void step_once(TimeNs due_ns, TimeNs host_ns) {
     const Snapshot<State>& newest = source_.newest();
     if (newest.step >= last_step_) return;
     take_messages();
@@ -194,6 +204,7 @@ class Simulation {
     next.step = newest.step + 1;
     next.time_s = static_cast<double>(next.step) * options_.step_s;
     next.due_ns = due_ns;
+    next.host_ns = host_ns;
     next.hash = state_hash(next.step, next.state);
     if (options_.log) log_.hashes.push_back(next.hash);
     source_.put();
@@ -212,6 +223,7 @@ class Simulation {
   std::uint64_t last_step_ = std::numeric_limits<std::uint64_t>::max();
   std::atomic<std::uint64_t> refused_states_{0};
   StepPacer::Counts pace_;
+  TimeNs host_zero_ns_ = 0;
   std::unique_ptr<StepThread> thread_;  // last: ends before what it uses
 };
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -22,8 +23,13 @@ struct Snapshot {
   State state{};
   std::uint64_t step = 0;  // taken since time 0
   double time_s = 0.0;     // simulated: step * step_s
-  TimeNs due_ns = 0;       // when the clock asked for this step; lock-step: the simulated time
+  TimeNs due_ns = 0;       // when the clock asked for this step; lock-step: as host_ns
+  // The same on the host's clock, by which devices stamp; in simulated time that is the scene's.
+  TimeNs host_ns = 0;
   std::uint64_t hash = 0;  // state_hash(step, state)
+
+  // To be added to a time of the host's clock for the scene's.
+  TimeNs scene_from_host_ns() const { return std::llround(time_s * 1e9) - host_ns; }
 };
 
 // The two newest, published together: a slow reader still gets neighbours.

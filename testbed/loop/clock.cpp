@@ -26,10 +26,10 @@ TimeNs Clock::wait_for_due() {
   if (!pacer_) pacer_.emplace(1.0 / period_s_, catch_up_, clock.now());
   while (due_ == 0) {
     clock.wait_until(pacer_->next_ns());
-    due_ = pacer_->take(clock.now());
+    given_ = due_ = pacer_->take(clock.now());
   }
   --due_;
-  return clock.now();
+  return pacer_->taken_ns(given_, given_ - 1 - due_);
 }
 
 FrameTime Clock::next(std::optional<TimeNs> display_at_ns) {
@@ -39,11 +39,12 @@ FrameTime Clock::next(std::optional<TimeNs> display_at_ns) {
     seen_ns_ = std::max(seen_ns_, run_ ? run_->at(*display_at_ns) : *display_at_ns);
     if (frame == 0.0) begun_ns_ = seen_ns_;
     const double time_s = start_s_ + 1e-9 * static_cast<double>(seen_ns_ - begun_ns_);
-    return {time_s, time_s, seen_ns_};
+    return {time_s, time_s, seen_ns_, *display_at_ns};
   }
   const TimeNs run_ns = real_ ? wait_for_due() : display_at_ns.value_or(0);
   const double time_s = start_s_ + (frame + static_cast<double>(dropped())) * period_s_;
-  return {time_s, time_s + period_s_, run_ns};
+  const TimeNs host_ns = !real_ ? 0 : run_ ? run_->host_at(run_ns) : run_ns;
+  return {time_s, time_s + period_s_, run_ns, host_ns};
 }
 
 }  // namespace neritic::testbed

@@ -15,6 +15,7 @@ struct FrameTime {
   double next_time_s = 0.0;  // of the frame after it, as far as is known now
   // When it is seen or, without a display, was due; on the clock that paces the run.
   TimeNs run_ns = 0;
+  TimeNs host_ns = 0;  // the same on the host's clock; simulated: 0
 };
 
 class Clock {
@@ -51,7 +52,8 @@ class Clock {
   std::uint64_t frames_ = 0;             // so far, with those before the first
   TimeNs begun_ns_ = 0, seen_ns_ = 0;    // of the first and the newest frame of a display
   std::optional<sim::StepPacer> pacer_;  // without a display
-  int due_ = 0;                          // frames that the pacer gave and that were not taken yet
+  // Frames that the pacer gave last, and those of them that were not taken yet.
+  int given_ = 0, due_ = 0;
 };
 
 }  // namespace neritic::testbed

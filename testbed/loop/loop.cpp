@@ -158,6 +158,10 @@ double Loop::advance(const FrameTime& at) {
   LivePhysics* physics = parts_.physics;
   const double time_s = std::min(at.time_s, end_s_);
   if (!physics) return time_s;
+  if (parts_.clock.is_real() && physics->pace() == LivePhysics::Pace::kPicture)
+    physics->keep_pace(
+        parts_.sensors ? at.time_s : physics->newest().time_s + physics->world().step_s(),
+        at.host_ns);
   if (parts_.sensors)
     return std::min(physics->follow(at.run_ns, time_s, [this] { return stopped(); }), end_s_);
   physics->advance();

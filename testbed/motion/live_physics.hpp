@@ -3,6 +3,7 @@
 // The thread that runs the loop owns this and calls all of it.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -76,6 +77,10 @@ class LivePhysics {
   void reach(double time_s, const Stop& stop = {});
   // Lock-step: one step. Nothing is kept: the history does not follow.
   void advance();
+  // Lock-step at the host's pace: from the next step on, when the scene's time was time_s.
+  void keep_pace(double time_s, TimeNs host_ns) {
+    simulation_->set_host_zero(host_ns - std::llround(time_s * 1e9));
+  }
   // Where samples enter; any thread. They count from the next step on.
   SampleInbox& inbox() { return simulation_->inbox(); }
 

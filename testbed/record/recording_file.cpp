@@ -65,7 +65,7 @@ Status RecordingFile::accept(const sim::Snapshot<PhysicsState>& step,
     tell_failure();
     return {};
   }
-  log_.step(step.step, step.time_s, step.due_ns, step.hash);
+  log_.step(step.step, step.time_s, step.host_ns, step.hash);
   ros_.step(step);
   for (const Sample& sample : outputs)
     if (!ros_.output(sample, log_.now_ns(), log_.scene_ns(sample.header.captured_ns)))

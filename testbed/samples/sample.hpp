@@ -22,8 +22,8 @@ struct SampleHeader {
   StreamId stream = 0;
   SourceId source = kSimulation;
   std::uint64_t sequence = 0;  // rises by one a sample of this source and stream
-  // The clock that drives the steps. Captured: when it was measured, mapped from the sender's
-  // clock. Arrived: when it reached this program; the source that pushes it sets both.
+  // The host's clock; in simulated time the scene's. Captured: when it was measured, mapped from
+  // the sender's clock. Arrived: when it reached this program; the source that pushes it sets both.
   TimeNs captured_ns = 0, arrived_ns = 0;
 
   static void fields(auto&& field, auto& self) {

@@ -92,11 +92,11 @@ void SampleLogWriter::source(std::string_view name) {
   ++sources_;
 }
 
-void SampleLogWriter::step(std::uint64_t step, double time_s, TimeNs due_ns, std::uint64_t hash) {
+void SampleLogWriter::step(std::uint64_t step, double time_s, TimeNs host_ns, std::uint64_t hash) {
   begun_ = true;
   step_ = step;
   now_ns_ = std::llround(time_s * 1e9);
-  due_ns_ = due_ns;
+  host_ns_ = host_ns;
   std::string bytes;
   recording::CdrWriter cdr(bytes);
   cdr.header(now_ns_, "");

@@ -66,13 +66,13 @@ class SampleLogWriter {
                   std::optional<std::int64_t> recorded_at_ns = {});
   void source(std::string_view name);
   std::size_t sources() const { return sources_; }
-  // A state: when it was due on the run's clock.
-  void step(std::uint64_t step, double time_s, TimeNs due_ns, std::uint64_t hash);
+  // A state: when it was due on the host's clock, which samples are stamped by.
+  void step(std::uint64_t step, double time_s, TimeNs host_ns, std::uint64_t hash);
   // That the next step uses; or that the newest step gave. Preconditions: its source has been
   // named, and the start has its hash.
   void sample(const Sample& sample);
-  // The scene's time when that was on the run's clock.
-  std::int64_t scene_ns(TimeNs clock_ns) const { return now_ns_ - (due_ns_ - clock_ns); }
+  // The scene's time when that was on the host's clock.
+  std::int64_t scene_ns(TimeNs host_ns) const { return now_ns_ - (host_ns_ - host_ns); }
   // The scene's time of the newest step.
   std::int64_t now_ns() const { return now_ns_; }
 
@@ -84,7 +84,7 @@ class SampleLogWriter {
   std::uint16_t step_channel_ = 0, source_channel_ = 0;
   std::size_t sources_ = 0;
   std::uint64_t step_ = 0;
-  std::int64_t now_ns_ = 0, due_ns_ = 0;
+  std::int64_t now_ns_ = 0, host_ns_ = 0;
   bool begun_ = false;
 };
 

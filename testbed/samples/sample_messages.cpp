@@ -64,7 +64,9 @@ std::string_view words_of(PayloadKind kind) {
 }
 
 constexpr const char* kEnvelope =
-    "# Axes, unless said: x east, y up, z south, metres. Times on the run's clock, nanoseconds.\n"
+    "# Axes, unless said: x east, y up, z south, metres. Times: header the scene's; others the "
+    "host's clock, in "
+    "nanoseconds, in simulated time the scene's.\n"
     "std_msgs/Header header\n"
     "uint64 step\nuint32 source\nuint64 sequence\nint64 captured_ns\nint64 arrived_ns\n";
 

@@ -128,8 +128,9 @@ void OutputSamples::add_reports(Output& output, const Stream& stream,
     const bool leaves = report.event <= sonar::ModemEvent::kRefused;
     if (!begun_ && (leaves ? report.at_s < began_s : report.at_s <= began_s)) continue;
     const TimeNs age_ns = std::max<TimeNs>(to_ns(snapshot.time_s - report.at_s), 0);
-    samples_.push_back({{output.stream, kSimulation, k, snapshot.due_ns - age_ns, snapshot.due_ns},
-                        modem_reading(report)});
+    samples_.push_back(
+        {{output.stream, kSimulation, k, snapshot.host_ns - age_ns, snapshot.host_ns},
+         modem_reading(report)});
   }
   output.count = all;
 }
@@ -177,7 +178,7 @@ std::span<const Sample> OutputSamples::of(const sim::Snapshot<PhysicsState>& sna
     if (!due || now.count == 0) continue;
     const TimeNs age_ns = to_ns(snapshot.time_s - now.time_s);
     samples_.push_back(
-        {{output.stream, kSimulation, now.count - 1, snapshot.due_ns - age_ns, snapshot.due_ns},
+        {{output.stream, kSimulation, now.count - 1, snapshot.host_ns - age_ns, snapshot.host_ns},
          payload(stream, snapshot.state)});
   }
   begun_ = true;

@@ -12,8 +12,8 @@ DiveLink::DiveLink(LivePhysics& physics, const scene::Scene& scene, const std::s
 
 Status DiveLink::accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample> outputs) {
   if (outputs.empty()) return {};
-  // Programs outside go by simulated time, the thread's samples by its clock.
-  const TimeNs shift_ns = std::llround(step.time_s * 1e9) - step.due_ns;
+  // Programs outside go by simulated time, samples by the host's clock.
+  const TimeNs shift_ns = step.scene_from_host_ns();
   const std::lock_guard lock(mutex_);
   if (waiting_.size() + outputs.size() > kMostWaiting)
     waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(std::min(

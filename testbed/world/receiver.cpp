@@ -17,20 +17,20 @@ Status Receiver::accept(const sim::Snapshot<PhysicsState>& step, std::span<const
   if (last_step_ == step.step) return {};
   last_step_ = step.step;
   NERITIC_TRY_STATUS(recording.accept(step, outputs));
-  receive(outputs);
+  receive(outputs, step.scene_from_host_ns());
   return {};
 }
 
-void Receiver::receive(std::span<const Sample> outputs) {
+void Receiver::receive(std::span<const Sample> outputs, TimeNs shift_ns) {
   for (const Sample& sample : outputs) {
     const SampleHeader& header = sample.header;
     const LinkOptions& link = links[header.stream];
     const auto arrival_ns =
-        arrival_of(link, seed_, header.stream, header.sequence, header.arrived_ns);
+        arrival_of(link, seed_, header.stream, header.sequence, header.arrived_ns + shift_ns);
     if (!arrival_ns) continue;
     Reading reading{.stream = header.stream,
                     .sequence = header.sequence,
-                    .stamp_ns = header.captured_ns,
+                    .stamp_ns = header.captured_ns + shift_ns,
                     .arrival_ns = *arrival_ns};
     reading.count = static_cast<std::uint32_t>(ros::write_values(sample.payload, reading.values));
     if (link.direct())

@@ -149,12 +149,8 @@ Result<SourceId> World::Parts::source(const std::string& name) {
 Status World::Parts::push(SourceId source, StreamId stream, const Payload& payload,
                           TimeNs captured_ns) {
   const std::string& name = world().streams()[stream].name;
-  TimeNs now = std::llround(newest().time_s * 1e9);
-  if (physics->pace() ==
-      LivePhysics::Pace::kClock) {  // an attached world's samples go by its clock
-    captured_ns += newest().due_ns - now;
-    now = newest().due_ns;
-  }
+  const TimeNs now = newest().host_ns;
+  captured_ns -= newest().scene_from_host_ns();
   const SampleVerdict verdict = physics->inbox().push(
       {{stream, source, sequences[{source, stream}]++, captured_ns, now}, payload});
   if (verdict == SampleVerdict::kAccepted) return {};

@@ -21,7 +21,8 @@ class Receiver final : public StepSink {
   std::vector<StreamId> streams() const override { return outputs_; }
   Status use(const Sample& sample) override { return recording.use(sample); }
   Status accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample> outputs) override;
-  void receive(std::span<const Sample> outputs);
+  // shift_ns: to be added to their times for the scene's.
+  void receive(std::span<const Sample> outputs, TimeNs shift_ns = 0);
   // A loop's end is not the recording's: a world has one loop after another.
   Status finish() override { return {}; }
 

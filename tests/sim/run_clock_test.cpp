@@ -53,6 +53,27 @@ TEST(RunClock, StandsWhilePausedAndStepsByJustThat) {
   EXPECT_DOUBLE_EQ(t.seconds(), 2.06);
 }
 
+// Devices stamp by the host's clock: a step's time there is known through pause and speed.
+TEST(RunClock, SaysWhenTheHostsClockShowedItsTime) {
+  Watched t;
+  const auto host_s = [&](double run_s) {
+    const auto at_ns = 5 * kSecond_ns + static_cast<TimeNs>(run_s * 1e9);
+    return 1e-9 * static_cast<double>(t.run.host_at(at_ns) - 5 * kSecond_ns);
+  };
+  t.host.advance(kSecond_ns);
+  EXPECT_NEAR(host_s(0.9), 0.9, 1e-9);
+  t.run.pause(true);
+  t.host.advance(10 * kSecond_ns);
+  EXPECT_NEAR(host_s(1.0), 11.0, 1e-9);
+  t.run.pause(false);
+  EXPECT_NEAR(host_s(1.0), 11.0, 1e-9);
+  t.host.advance(kSecond_ns);
+  EXPECT_NEAR(host_s(1.9), 11.9, 1e-9);
+  t.run.set_speed(0.25);
+  t.host.advance(4 * kSecond_ns);
+  EXPECT_NEAR(host_s(2.5), 14.0, 1e-9);
+}
+
 // A wait ends while paused, so that who waits can be stopped; and steps come at the run's pace,
 // none dropped.
 TEST(RunClock, PacesStepsAndDropsNoneThroughPauseAndSpeed) {

@@ -145,6 +145,44 @@ TEST_F(LoopTest, AFailedSinkEndsTheRunAndAllAreFinished) {
   EXPECT_EQ(other.finished + failing.finished, 2);
 }
 
+// At the host's pace a step is due by the host's clock, which devices stamp by.
+TEST_F(LoopTest, StepsAtTheHostsPaceAndTheirReadingsHaveItsTimes) {
+  const auto dive = physics();
+  class Stamps final : public StepSink {
+   public:
+    explicit Stamps(StreamId stream) : stream_(stream) {}
+    std::vector<StreamId> streams() const override { return {stream_}; }
+    Status accept(const sim::Snapshot<PhysicsState>& step,
+                  std::span<const Sample> outputs) override {
+      if (step.step == 0) return {};
+      EXPECT_LE(step.host_ns, now_ns());
+      if (!due_ns.empty()) {
+        EXPECT_GT(step.host_ns, due_ns.back());
+      }
+      due_ns.push_back(step.host_ns);
+      for (const Sample& sample : outputs) {
+        EXPECT_LE(sample.header.captured_ns, step.host_ns);
+        EXPECT_GT(sample.header.captured_ns, step.host_ns - 1'000'000'000);
+      }
+      return {};
+    }
+    Status finish() override { return {}; }
+    std::vector<TimeNs> due_ns;
+
+   private:
+    StreamId stream_;
+  } stamps(dive->world().streams().find("rov/pressure").value());
+  const double step_s = dive->world().step_s();
+  const TimeNs begun_ns = now_ns();
+  Loop loop({.clock = Clock::real(0.0, step_s),
+             .physics = dive.get(),
+             .step_sinks = {&stamps},
+             .stop = {.frames = 60}});
+  ASSERT_TRUE(loop.run().ok());
+  ASSERT_EQ(stamps.due_ns.size(), 60u);
+  EXPECT_GE(stamps.due_ns.front(), begun_ns);
+}
+
 TEST_F(LoopTest, AnInterruptEndsItBetweenSteps) {
   const auto dive = physics();
   Loop loop({.clock = Clock::simulated(0.0, dive->world().step_s()),
