@@ -95,7 +95,7 @@ class Frames {
   virtual bool was_submitted(std::uint64_t recording) const = 0;
   // Waits until that frame is done (kDeviceLost after 60 s).
   virtual Status wait(std::uint64_t value) = 0;
-  // The newest frame that is done; 0 before the first. Does not wait.
+  // The newest frame that is done; 0 before the first. Does not wait. Any thread.
   virtual Result<std::uint64_t> completed() const = 0;
   // Runs destroy when the frame being recorded (or the last submitted) is done on the GPU.
   virtual void retire(std::function<void()> destroy) = 0;

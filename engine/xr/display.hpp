@@ -115,6 +115,9 @@ class Display {
   // where the space in which the display tracks lies in the world; displays without tracking do not
   // use it.
   virtual Result<DisplayFrame> begin_frame(const Pose& world_from_stage) = 0;
+  // Whether begin_frame returns when the next frame should begin for the device to be ready for it
+  // (a headset's runtime); else whoever draws waits for the device.
+  virtual bool paces_device() const { return false; }
   // Reads the head's and the views' poses again, for the same display time: as late as the frame
   // allows, just before the views are declared. The stage may have moved since begin_frame.
   // Displays without tracking change nothing.

@@ -62,6 +62,7 @@ DiveView::~DiveView() {
 
 Result<xr::FrameVerdict> DiveView::begin_frame() {
   if (options_.timeline) timeline_.begin(now_ns());
+  NERITIC_TRY_STATUS(await_device());
   NERITIC_TRY(frame_, display_.begin_frame(world_from_stage_));
   in_frame_ = frame_.verdict != xr::FrameVerdict::kQuit;
   const TimeNs now = now_ns();
@@ -343,6 +344,15 @@ Status DiveView::end_frame(std::optional<std::uint64_t> value) {
   NERITIC_TRY_STATUS(screenshots_.write_done(completed));
   if (const auto note = screenshots_.take_note()) tell(*note);
   return {};
+}
+
+// A frame shows what is known when it begins. It would be drawn after those that the device has not
+// finished, so they come first, all but one where the display's runtime times the frames: the host
+// waits before it asks what is known, not between that and the submission.
+Status DiveView::await_device() {
+  const std::size_t ahead = display_.paces_device() ? 1 : 0;
+  if (options_.overlap || in_flight_.size() <= ahead) return {};
+  return session_.frames().wait(in_flight_[in_flight_.size() - 1 - ahead]);
 }
 
 Status DiveView::collect_times(std::uint64_t completed) {

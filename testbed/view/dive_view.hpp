@@ -38,6 +38,9 @@ struct DiveViewOptions {
   sim::RunClock* clock = nullptr;  // of the run, for keys that stop or speed it up
   double frame_s = 1.0 / 30.0;     // that a step of time shows
   bool timeline = false;           // keep each frame's phases
+  // Begins a frame while the device still draws the one before: more pictures, which are seen later
+  // after what they show. For runs in simulated time.
+  bool overlap = false;
   // The run's state and recording by key, with physics on a thread; empty: they give a note why
   // not.
   std::optional<RunKeeperOptions> keep;
@@ -92,6 +95,7 @@ class DiveView final : public FrameView {
   void keep_run(const DiveInput& input);
   void tell(const std::string& note);
   double view_scale() const { return governor_ ? governor_->quality().view_scale : 1.0; }
+  Status await_device();
   Status collect_times(std::uint64_t completed);
   void add_work(std::span<const gpu::PassTime> passes);
 

@@ -287,6 +287,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
                                 .clock = clock,
                                 .frame_s = 1.0 / camera.rate_hz,
                                 .timeline = !flags.timeline.empty(),
+                                .overlap = flags.fast,
                                 .keep = kept_by_key(flags, recording),
                                 .no_keys_for_files =
                                     replay ? "a replay is neither saved nor recorded"

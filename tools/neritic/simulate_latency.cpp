@@ -1,6 +1,6 @@
-// `neritic simulate latency`: the time from a suit's packet to the first picture that shows it. A
-// suit sends by loopback, its thread, the simulation's and the pictures run as in a window, without
-// the window: its screen adds its own delay.
+// `neritic simulate latency`: the time from a suit's packet to the picture that shows it. A suit
+// sends by loopback; its thread, the simulation's and the loop of pictures run as in a window,
+// without the window: its screen adds its own delay.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -14,7 +14,10 @@
 #include "engine/core/refusal.hpp"
 #include "engine/gpu/device.hpp"
 #include "engine/sim/run_clock.hpp"
+#include "engine/xr/offscreen.hpp"
+#include "testbed/loop/loop.hpp"
 #include "testbed/sensors/session.hpp"
+#include "testbed/view/dive_view.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/simulate.hpp"
 
@@ -23,19 +26,24 @@ using namespace testbed;
 namespace {
 
 constexpr double kLatencySeconds = 10.0;
+constexpr std::chrono::microseconds kLook{200};  // whether the device is done
+constexpr std::size_t kFirst = 5;                // pipelines are made, caches are cold
 
 // Packets by the step that used them; from the stepping thread to the pictures'.
-class UsedPackets {
+class UsedPackets final : public StepSink {
  public:
-  void use(const Sample& sample) {
-    if (sample.kind() != PayloadKind::kBodyJoints) return;
+  Status use(const Sample& sample) override {
+    if (sample.kind() != PayloadKind::kBodyJoints) return {};
     const std::lock_guard lock(mutex_);
     used_.push_back({step_ + 1, sample.header.arrived_ns});
+    return {};
   }
-  void step(std::uint64_t step) {
+  Status accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample>) override {
     const std::lock_guard lock(mutex_);
-    step_ = step;
+    step_ = step.step;
+    return {};
   }
+  Status finish() override { return {}; }
   // Arrivals that the state after that step shows, and no picture before.
   std::vector<TimeNs> shown_by(std::uint64_t step) {
     const std::lock_guard lock(mutex_);
@@ -55,6 +63,80 @@ class UsedPackets {
   std::deque<Used> used_;
 };
 
+struct TimedPicture {
+  std::uint64_t submission = 0;
+  TimeNs begun_ns = 0;             // when it took the state that it shows
+  std::vector<TimeNs> arrived_ns;  // of packets that no picture before it showed
+  TimeNs done_ns = 0;              // 0: not yet
+};
+
+// A view whose pictures are timed; a thread of its own looks when the device is done.
+class TimedView final : public FrameView {
+ public:
+  TimedView(DiveView& view, const LivePhysics& physics, gpu::Frames& frames, UsedPackets& used)
+      : view_(view), physics_(physics), frames_(frames), used_(used), looking_([this] {
+          look();
+        }) {}
+  ~TimedView() override { stop(); }
+  TimedView(const TimedView&) = delete;
+  TimedView& operator=(const TimedView&) = delete;
+
+  Result<xr::FrameVerdict> begin_frame() override { return view_.begin_frame(); }
+  std::optional<TimeNs> display_at_ns() const override { return view_.display_at_ns(); }
+  bool shown() const override { return view_.shown(); }
+  bool in_frame() const override { return view_.in_frame(); }
+  bool take_input() override { return view_.take_input(); }
+  std::uint32_t ping_every() const override { return view_.ping_every(); }
+  void add_views(FrameRequest& request) override {
+    now_ = {.begun_ns = now_ns(), .arrived_ns = used_.shown_by(physics_.shown_snapshot().step)};
+    view_.add_views(request);
+  }
+  Status declare(graph::FrameGraph& graph, const SensorFrame& frame, double time_s,
+                 bool last) override {
+    return view_.declare(graph, frame, time_s, last);
+  }
+  gpu::Frames::SubmitSync sync() const override { return view_.sync(); }
+  Status end_frame(std::optional<std::uint64_t> value) override {
+    if (value) {
+      const std::lock_guard lock(mutex_);
+      now_.submission = *value;
+      pictures_.push_back(std::exchange(now_, {}));
+    }
+    return view_.end_frame(value);
+  }
+  Status finish() override { return view_.finish(); }
+
+  // All that are done, from the first.
+  std::vector<TimedPicture> stop() {
+    stop_ = true;
+    if (looking_.joinable()) looking_.join();
+    std::erase_if(pictures_, [](const TimedPicture& picture) { return picture.done_ns == 0; });
+    return {pictures_.begin(), pictures_.end()};
+  }
+
+ private:
+  void look() {
+    for (std::size_t next = 0; !stop_;) {
+      std::this_thread::sleep_for(kLook);
+      const auto completed = frames_.completed();
+      if (!completed.ok()) return;
+      const std::lock_guard lock(mutex_);
+      for (; next < pictures_.size() && pictures_[next].submission <= *completed; ++next)
+        pictures_[next].done_ns = now_ns();
+    }
+  }
+
+  DiveView& view_;
+  const LivePhysics& physics_;
+  gpu::Frames& frames_;
+  UsedPackets& used_;
+  TimedPicture now_;
+  std::mutex mutex_;
+  std::deque<TimedPicture> pictures_;
+  std::atomic<bool> stop_{false};
+  std::thread looking_;  // last: it uses what is above
+};
+
 struct Times {
   double median_ms = 0.0, p99_ms = 0.0, most_ms = 0.0;
 };
@@ -65,6 +147,70 @@ Times times_of(std::vector<double> all) {
 }
 nlohmann::json times_json(const Times& t) {
   return {{"median", t.median_ms}, {"p99", t.p99_ms}, {"largest", t.most_ms}};
+}
+std::string times_words(const Times& t) {
+  return fmt::format("median {:.1f} ms, 99 % {:.1f}, largest {:.1f}", t.median_ms, t.p99_ms,
+                     t.most_ms);
+}
+
+// Of each picture; a frame is from the end of the picture before to its own.
+struct Latencies {
+  std::vector<double> frame_ms, drawing_ms;
+  std::vector<double> newest_ms;  // from its newest packet to its end
+  std::vector<double> waited_ms;  // of that: until the picture began
+  std::vector<double> beyond_ms;  // of that: beyond its own frame
+  std::vector<double> any_ms;     // from each packet to the end of the first picture that shows it
+};
+Latencies latencies_of(const std::vector<TimedPicture>& pictures) {
+  Latencies out;
+  for (std::size_t i = kFirst; i < pictures.size(); ++i) {
+    const TimedPicture& picture = pictures[i];
+    const double frame_ms = to_ms(picture.done_ns - pictures[i - 1].done_ns);
+    out.frame_ms.push_back(frame_ms);
+    out.drawing_ms.push_back(to_ms(picture.done_ns - picture.begun_ns));
+    for (const TimeNs at_ns : picture.arrived_ns)
+      out.any_ms.push_back(to_ms(picture.done_ns - at_ns));
+    if (picture.arrived_ns.empty()) continue;
+    const TimeNs newest_ns = picture.arrived_ns.back();
+    out.newest_ms.push_back(to_ms(picture.done_ns - newest_ns));
+    out.waited_ms.push_back(to_ms(picture.begun_ns - newest_ns));
+    out.beyond_ms.push_back(out.newest_ms.back() - frame_ms);
+  }
+  return out;
+}
+
+void tell(const Latencies& all, bool json, const std::string& device, const xr::ViewGroup& size,
+          double step_ms, std::uint64_t dropped) {
+  const Times frame = times_of(all.frame_ms), drawing = times_of(all.drawing_ms),
+              newest = times_of(all.newest_ms), waited = times_of(all.waited_ms),
+              beyond = times_of(all.beyond_ms), any = times_of(all.any_ms);
+  const auto within = static_cast<std::size_t>(
+      std::ranges::count_if(all.beyond_ms, [&](double ms) { return ms < step_ms; }));
+  const double share = static_cast<double>(within) / static_cast<double>(all.beyond_ms.size());
+  if (json) {
+    fmt::print("{}\n",
+               json_text({{"device", device},
+                          {"pictures", all.newest_ms.size()},
+                          {"frame_ms", times_json(frame)},
+                          {"step_ms", step_ms},
+                          {"drawing_ms", times_json(drawing)},
+                          {"newest_packet_to_picture_ms", times_json(newest)},
+                          {"newest_packet_to_begin_ms", times_json(waited)},
+                          {"newest_packet_to_picture_beyond_its_frame_ms", times_json(beyond)},
+                          {"within_its_frame_and_a_step", share},
+                          {"packet_to_first_picture_ms", times_json(any)},
+                          {"steps_dropped", dropped}}));
+    return;
+  }
+  fmt::print(
+      "{} x {} on {}, {} pictures, a step {:.1f} ms, {} steps dropped\n"
+      "a frame: {}\n  of it from the state to the end of drawing: {}\n"
+      "newest packet to its picture: {}\n  of it until the picture began: {}\n"
+      "  beyond the picture's own frame: {}; within that frame and a step: {:.1f} %\n"
+      "any packet to the first picture that shows it: {}\n",
+      size.width, size.height, device, all.newest_ms.size(), step_ms, dropped, times_words(frame),
+      times_words(drawing), times_words(newest), times_words(waited), times_words(beyond),
+      100.0 * share, times_words(any));
 }
 
 // A suit that kicks, in real time.
@@ -96,8 +242,8 @@ Status simulate_latency(const SimulateFlags& flags, scene::Scene scene,
   if (!flags.size.empty()) {
     NERITIC_TRY(size, parse_size("--size", flags.size));
   }
-  scene.cameras[0].width = size.first, scene.cameras[0].height = size.second;
-  const double rate_hz = flags.picture_hz > 0.0 ? flags.picture_hz : scene.cameras[0].rate_hz;
+  const scene::Camera camera = scene.cameras[0];
+  const double rate_hz = flags.picture_hz > 0.0 ? flags.picture_hz : camera.rate_hz;
   Address to = suit->address;
   to.ipv4 = Address().ipv4;
   NERITIC_TRY(const net::UdpSender sender, net::UdpSender::create(to));
@@ -108,80 +254,37 @@ Status simulate_latency(const SimulateFlags& flags, scene::Scene scene,
   const auto physics =
       LivePhysics::create(std::move(made), {.pace = LivePhysics::Pace::kClock, .clock = &run});
   physics->await_steps(LivePhysics::kPictureWait);
-  physics->observe([&](const sim::Snapshot<PhysicsState>& step) { used.step(step.step); },
-                   [&](const Sample& sample) { used.use(sample); });
   gpu::DeviceOptions device_options;
   device_options.device = flags.device;
   device_options.cache_folder = gpu::default_cache_folder();
   NERITIC_TRY(const auto device, gpu::Device::create(device_options));
   const scene::Scene read = scene;
   NERITIC_TRY(const auto session, Session::create(*device, std::move(scene)));
+  const xr::ViewGroup group = xr::one_view(size.first, size.second, camera.vertical_fov_rad);
+  NERITIC_TRY(const auto display, xr::OffscreenDisplay::create(*device, {.groups = {group}}));
   NERITIC_TRY(const auto devices,
               Devices::open(read, physics->world(), physics->inbox(), DeviceSource::Pace::kThread));
+  NERITIC_TRY(const auto view, DiveView::create(*session, *display, nullptr, physics.get(),
+                                                {.may_fly = false, .clock = &run}));
+  TimedView timed(*view, *physics, session->frames(), used);
+  Loop loop(
+      {.clock = Clock::real(0.0, 1.0 / rate_hz, 1, &run),
+       .physics = physics.get(),
+       .sensors = LoopSensors{.session = session.get(), .capture = kColorOnGpu, .own_rates = true},
+       .view = &timed,
+       .step_sinks = {&used},
+       .stop = {.seconds = flags.seconds.value_or(kLatencySeconds),
+                .interrupted = [&] { return interrupt.requested(); }}});
   std::atomic<bool> stop{false};
   std::thread sending([&] { send_suit(sender, stop); });
-  physics->start();
-  const auto period_ns = static_cast<TimeNs>(1e9 / rate_hz);
-  const double seconds = flags.seconds.value_or(kLatencySeconds);
-  std::vector<double> newest_ms, all_ms, drawn_ms, frame_ms;
-  TimeNs last_ns = 0;  // the frame before began
-  Status status;
-  TimeNs due_ns = now_ns();
-  const TimeNs end_ns = due_ns + static_cast<TimeNs>(1e9 * seconds);
-  for (std::uint32_t frame = 0; now_ns() < end_ns && !interrupt.requested() && status.ok();
-       ++frame) {
-    due_ns = std::max(due_ns + period_ns, now_ns() - period_ns);
-    if (const TimeNs wait_ns = due_ns - now_ns(); wait_ns > 0)
-      std::this_thread::sleep_for(std::chrono::nanoseconds(wait_ns));
-    const TimeNs frame_ns = now_ns();
-    FrameRequest request;
-    request.time_s = physics->follow(run.now(), 0.0);
-    const TimeNs begun_ns = now_ns();
-    request.next_time_s = request.time_s + 1.0 / rate_hz;
-    request.frame = frame;
-    request.cameras = {0};
-    request.capture = Capture{.motion = false}.without_geometry();
-    request.simulated = &physics->motion();
-    const std::uint64_t step = physics->shown_snapshot().step;
-    const auto rendered = session->render(request);
-    if (!rendered.ok()) status = rendered.error();
-    const TimeNs done_ns = now_ns();
-    const std::vector<TimeNs> arrived = used.shown_by(step);
-    const TimeNs between_ns = frame_ns - std::exchange(last_ns, frame_ns);
-    if (frame < 5 || arrived.empty()) continue;  // pipelines are made, caches are cold
-    frame_ms.push_back(to_ms(between_ns));
-    drawn_ms.push_back(to_ms(done_ns - begun_ns));
-    newest_ms.push_back(to_ms(done_ns - arrived.back()));
-    for (const TimeNs at_ns : arrived) all_ms.push_back(to_ms(done_ns - at_ns));
-  }
+  const Status status = loop.run();
   stop = true;
   sending.join();
-  physics->stop();
-  physics->observe({});
+  const Latencies all = latencies_of(timed.stop());
   NERITIC_TRY_STATUS(status);
-  if (newest_ms.empty()) return failure(ErrorCode::kUnsupported, "no picture showed a packet");
-  const Times newest = times_of(newest_ms), all = times_of(all_ms), drawn = times_of(drawn_ms);
-  const double period_ms = times_of(frame_ms).median_ms, step_ms = 1e3 * physics->world().step_s();
-  if (flags.json) {
-    fmt::print("{}\n", json_text({{"device", device->info().name},
-                                  {"pictures", newest_ms.size()},
-                                  {"frame_ms", period_ms},
-                                  {"step_ms", step_ms},
-                                  {"drawing_ms", times_json(drawn)},
-                                  {"newest_packet_to_picture_ms", times_json(newest)},
-                                  {"packet_to_first_picture_ms", times_json(all)},
-                                  {"steps_dropped", physics->counts().dropped}}));
-    return {};
-  }
-  fmt::print(
-      "{} x {} on {}, a frame {:.1f} ms (drawing {:.1f}), a step {:.1f} ms\n"
-      "newest packet to its picture: median {:.1f} ms, 99 % {:.1f}, largest {:.1f}; a frame and a "
-      "step are {:.1f}\n"
-      "any packet to the first picture that shows it: median {:.1f} ms, 99 % {:.1f}, largest "
-      "{:.1f}\n",
-      size.first, size.second, device->info().name, period_ms, drawn.median_ms, step_ms,
-      newest.median_ms, newest.p99_ms, newest.most_ms, period_ms + step_ms, all.median_ms,
-      all.p99_ms, all.most_ms);
+  if (all.newest_ms.empty()) return failure(ErrorCode::kUnsupported, "no picture showed a packet");
+  tell(all, flags.json, device->info().name, group, 1e3 * physics->world().step_s(),
+       physics->counts().dropped);
   return {};
 }
 

@@ -31,6 +31,7 @@ class OpenXrHeadset final : public Headset {
   const std::vector<std::string>& validation_messages() const override { return messages_; }
 
   Result<DisplayFrame> begin_frame(const Pose& world_from_stage) override;
+  bool paces_device() const override { return true; }
   void track(DisplayFrame& frame, const Pose& world_from_stage) override;
   Result<ShownPicture> declare(graph::FrameGraph& graph, const Pose& world_from_head,
                                std::span<const Layer> layers) override;
