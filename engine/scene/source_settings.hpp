@@ -15,7 +15,7 @@ namespace neritic::scene {
 
 struct DeviceSource {
   std::string name;      // under which its samples enter
-  std::string device;    // "mxtp", "strap", "jacket", "microphone"
+  std::string device;    // of kDeviceKinds
   std::string by;        // the way its bytes come: "udp", "tcp", "tcp-to", "bluetooth", ...
   Address address;       // of udp, tcp, tcp-to
   std::string port;      // of the others: a Bluetooth device, a sound card, a file, a stream
@@ -36,6 +36,7 @@ inline constexpr DeviceKind kDeviceKinds[] = {
     {"strap", {"heart"}, {"udp", "bluetooth", "lsl"}, 47811},
     {"jacket", {"buttons"}, {"udp", "lsl"}, 47810},
     {"microphone", {"breath"}, {"udp", "alsa", "wav", "lsl"}, 5004},
+    {"gaze", {"gaze"}, {"udp", "lsl"}, 47813},
 };
 const DeviceKind* device_kind(std::string_view name);
 

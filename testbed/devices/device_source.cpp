@@ -4,6 +4,7 @@
 
 #include "diver/breath_bands.hpp"
 #include "engine/core/thread_urgency.hpp"
+#include "testbed/devices/gaze_adapter.hpp"
 #include "testbed/devices/jacket_adapter.hpp"
 #include "testbed/devices/microphone_adapter.hpp"
 #include "testbed/devices/strap_adapter.hpp"
@@ -22,6 +23,7 @@ Result<std::unique_ptr<DeviceAdapter>> adapter_of(const scene::DeviceSource& sou
                                                  source.by.starts_with("tcp")));
   if (source.device == "strap") return Adapter(std::make_unique<StrapAdapter>());
   if (source.device == "jacket") return Adapter(std::make_unique<JacketAdapter>());
+  if (source.device == "gaze") return Adapter(std::make_unique<GazeAdapter>());
   NERITIC_TRY_STATUS(diver::check_sound_rate(source.rate_hz));
   return Adapter(std::make_unique<MicrophoneAdapter>(source.rate_hz));
 }

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "engine/core/refusal.hpp"
+#include "engine/net/gaze_wire.hpp"
 #include "engine/net/heart_strap.hpp"
 #include "engine/net/jacket_wire.hpp"
 #include "engine/net/rtp.hpp"
@@ -17,13 +18,16 @@
 namespace neritic::testbed {
 namespace {
 
-constexpr double kLook_s = 0.2;
+// Answers of streams beyond this network segment take half a second and more (resolver.h).
+constexpr double kLook_s = 1.0;
 constexpr TimeNs kLookEvery_ns = 2 * kSecond_ns;
 constexpr int kLostStream = -2;  // the library's error
 // The rate of a Polar strap; samples of other rates would give other intervals between beats.
 constexpr double kEcgRate_hz = 130.0, kMostOff = 0.01;
 constexpr double kResolve_s = 3.0, kOpen_s = 3.0, kExchange_s = 0.2;
-constexpr TimeNs kAskEvery_ns = 5 * kSecond_ns;
+// The first estimate takes eight exchanges of 64 ms each (liblsl's tuning.TimeProbeCount and
+// TimeProbeInterval), longer than kExchange_s: asked again soon, since samples wait meanwhile.
+constexpr TimeNs kAskEvery_ns = 5 * kSecond_ns, kAskAgain_ns = kSecond_ns;
 constexpr std::size_t kMostPulled = 4096;
 constexpr std::size_t kEcgChunk = 73;
 
@@ -77,6 +81,8 @@ class LslFeed final : public Feed {
     if (samples == 0) return;
     if (source_.device == "jacket")
       for (std::size_t i = 0; i < samples; ++i) give_buttons(i, received);
+    else if (source_.device == "gaze")
+      for (std::size_t i = 0; i < samples; ++i) give_gaze(i, received);
     else if (source_.device == "strap")
       give_ecg(samples, received);
     else
@@ -86,12 +92,12 @@ class LslFeed final : public Feed {
 
   // The offset that LSL found by its exchanges (the best of eight), with its own uncertainty.
   void exchange_times(DeviceAdapter& adapter) override {
-    if (!inlet_ || now_ns() - asked_ns_ < kAskEvery_ns) return;
-    asked_ns_ = now_ns();
+    if (!inlet_ || now_ns() < ask_ns_) return;
     int error = 0;
     double remote_s = 0.0, uncertainty_s = 0.0;
     const double correction_s =
         lsl_.correction(inlet_, &remote_s, &uncertainty_s, kExchange_s, &error);
+    ask_ns_ = now_ns() + (error == 0 ? kAskEvery_ns : kAskAgain_ns);
     if (error != 0) return;
     const TimeNs host_ns = now_ns();
     const TimeNs device_ns = ns_of(lsl_.clock() - correction_s);
@@ -142,7 +148,7 @@ class LslFeed final : public Feed {
       info_ = nullptr;
       return failure(ErrorCode::kIo, "LSL: no stream {} within {:g} s", source_.port, within_s);
     }
-    const std::size_t wanted = source_.device == "jacket" ? 3 : 1;
+    const std::size_t wanted = source_.device == "jacket" || source_.device == "gaze" ? 3 : 1;
     const int channels = lsl_.channels(info_);
     if (channels != static_cast<int>(wanted))
       return refusal(fmt::format("LSL: {}", source_.port), fmt::format("{} channels", channels),
@@ -187,6 +193,19 @@ class LslFeed final : public Feed {
     received(net::encode_jacket(packet), false);
   }
 
+  // A direction that is not finite, or none, is that of eyes that were not seen.
+  void give_gaze(std::size_t i, const net::Received& received) {
+    const Vec3f direction(data_[3 * i], data_[3 * i + 1], data_[3 * i + 2]);
+    const float length = glm::length(direction);
+    const bool valid = std::isfinite(length) && length > 0.0F;
+    received(net::encode_gaze({.valid = valid,
+                               .sequence = sequence_++,
+                               .time_us = static_cast<std::uint64_t>(
+                                   std::max<TimeNs>(ns_of(stamps_[i]), 0) / 1000),
+                               .direction = valid ? direction / length : Vec3f(0.0F)}),
+             false);
+  }
+
   void give_ecg(std::size_t samples, const net::Received& received) {
     for (std::size_t i = 0; i < samples; ++i) {
       ecg_.samples_uv.push_back(static_cast<std::int32_t>(
@@ -217,7 +236,7 @@ class LslFeed final : public Feed {
   std::size_t channels_ = 1;
   std::vector<float> data_;
   std::vector<double> stamps_;
-  TimeNs asked_ns_ = 0, last_ns_ = 0, looked_ns_ = 0;
+  TimeNs ask_ns_ = 0, last_ns_ = 0, looked_ns_ = 0;
   std::array<bool, 3> was_{};
   std::array<TimeNs, 3> pressed_ns_{};
   std::uint8_t presses_ = 0;

@@ -9,7 +9,9 @@ namespace neritic::testbed {
 Result<SharedLibrary> SharedLibrary::load(const std::string& names, const std::string& package) {
   std::istringstream words(names);
   for (std::string name; words >> name;)
-    if (void* handle = ::dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL)) return SharedLibrary(handle);
+    // It stays in memory when it is closed: threads of its own may still end.
+    if (void* handle = ::dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE))
+      return SharedLibrary(handle);
   return failure(ErrorCode::kUnsupported, "no {} on this machine; install {}",
                  names.substr(0, names.find(' ')), package);
 }

@@ -1,5 +1,5 @@
 // A library that is loaded while the program runs, where it is installed: nothing is linked, and
-// nobody who has no such device needs it. Closed with the object. One thread.
+// nobody who has no such device needs it. Closed with the object; stays in memory. One thread.
 #pragma once
 
 #include <string>

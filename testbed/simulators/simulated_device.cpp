@@ -5,6 +5,7 @@
 
 #include "diver/jacket.hpp"
 #include "engine/core/random.hpp"
+#include "engine/net/gaze_wire.hpp"
 #include "engine/net/heart_strap.hpp"
 #include "engine/net/jacket_wire.hpp"
 #include "engine/net/rtp.hpp"
@@ -15,7 +16,8 @@ namespace {
 
 constexpr TimeNs kMs = 1'000'000, kS = 1'000'000'000;
 
-// Tells which of a clock's ticks lie in the time since the last call. Ticks are by the device's clock.
+// Tells which of a clock's ticks lie in the time since the last call. Ticks are by the device's
+// clock.
 class Ticks {
  public:
   explicit Ticks(double rate_hz) : rate_hz_(rate_hz) {}
@@ -243,6 +245,37 @@ class SimulatedMicrophone final : public SimulatedDevice {
   double breath_ = 0.0, dull_ = 0.0;
 };
 
+// An eye tracker of 120 samples a second (UGZD), with the noise of a good one.
+class SimulatedGaze final : public SimulatedDevice {
+ public:
+  explicit SimulatedGaze(const SimulatedDeviceOptions& options)
+      : options_(options), ticks_(120.0) {}
+  void run(const PersonActs& acts, TimeNs now_ns, const Send& send) override {
+    ticks_.until(options_.clock.at(now_ns), [&](TimeNs at_ns) {
+      net::GazePacket packet{.valid = acts.eyes_open,
+                             .sequence = static_cast<std::uint16_t>(count_),
+                             .time_us = static_cast<std::uint64_t>(at_ns / 1000)};
+      for (int i = 0; i < 3; ++i) {
+        const auto draw = 3 * count_ + static_cast<std::uint64_t>(i);
+        const double noise =
+            kNoise_rad * (2.0 * random_uniform({options_.seed, 0x67617a, 0}, draw) - 1.0);
+        packet.direction[i] = static_cast<float>(acts.gaze[i] + noise);
+      }
+      ++count_;
+      send(net::encode_gaze(packet), options_.clock.host(at_ns, now_ns));
+    });
+  }
+  std::optional<TimeNs> wire_ns(TimeNs now_ns) const override { return options_.clock.at(now_ns); }
+
+ private:
+  // Sample to sample, evenly spread: some 0.05 degrees rms (Holmqvist 2011: 0.01 to 0.05 of
+  // trackers on a stand, up to 0.1 worn).
+  static constexpr double kNoise_rad = 1.5e-3;
+  SimulatedDeviceOptions options_;
+  Ticks ticks_;
+  std::uint64_t count_ = 0;
+};
+
 }  // namespace
 
 std::unique_ptr<SimulatedDevice> simulated_device(std::string_view kind,
@@ -250,6 +283,7 @@ std::unique_ptr<SimulatedDevice> simulated_device(std::string_view kind,
   if (kind == "mxtp") return std::make_unique<SimulatedSuit>(options);
   if (kind == "strap") return std::make_unique<SimulatedStrap>(options);
   if (kind == "jacket") return std::make_unique<SimulatedJacket>(options);
+  if (kind == "gaze") return std::make_unique<SimulatedGaze>(options);
   NERITIC_CHECK(kind == "microphone", "{}", kind);
   return std::make_unique<SimulatedMicrophone>(options);
 }

@@ -47,7 +47,7 @@ struct SimulatedDeviceOptions {
   // The signal itself, in place of the person's: an ECG in uV, or sound. Outlives the device.
   const diver::Recording* recording = nullptr;
 };
-// By the kinds of scene::kDeviceKinds: "mxtp", "strap", "jacket", "microphone".
+// By the kinds of scene::kDeviceKinds: "mxtp", "strap", "jacket", "microphone", "gaze".
 std::unique_ptr<SimulatedDevice> simulated_device(std::string_view kind,
                                                   const SimulatedDeviceOptions& options);
 

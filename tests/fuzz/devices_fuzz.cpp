@@ -4,6 +4,7 @@
 #include "diver/segments.hpp"
 #include "engine/core/check.hpp"
 #include "engine/scene/source_settings.hpp"
+#include "testbed/devices/gaze_adapter.hpp"
 #include "testbed/devices/jacket_adapter.hpp"
 #include "testbed/devices/microphone_adapter.hpp"
 #include "testbed/devices/strap_adapter.hpp"
@@ -21,7 +22,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const SourceId source = inbox.open("device", 15 * kSecond_ns).value();
   Outlet out(inbox, source, streams, 0);
   std::unique_ptr<DeviceAdapter> adapter;
-  switch (std::to_integer<int>(bytes[0]) % 5) {
+  switch (std::to_integer<int>(bytes[0]) % 6) {
     case 0:
       adapter = std::make_unique<SuitAdapter>(0, false);
       break;
@@ -34,8 +35,11 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     case 3:
       adapter = std::make_unique<JacketAdapter>();
       break;
-    default:
+    case 4:
       adapter = std::make_unique<MicrophoneAdapter>(8000.0);
+      break;
+    default:
+      adapter = std::make_unique<GazeAdapter>();
   }
   TimeNs now = kSecond_ns;
   for (std::size_t at = 1; at + 2 <= bytes.size();) {

@@ -9,6 +9,7 @@
 
 #include "engine/core/json.hpp"
 #include "engine/core/refusal.hpp"
+#include "engine/net/gaze_wire.hpp"
 #include "engine/net/heart_strap.hpp"
 #include "engine/net/jacket_wire.hpp"
 #include "engine/net/rtp.hpp"
@@ -48,6 +49,8 @@ class PacketMaker {
       packet.samples.assign(16, 0.01F);
       return net::encode_rtp(packet);
     }
+    if (device_ == "gaze")
+      return net::encode_gaze({.sequence = static_cast<std::uint16_t>(n), .time_us = n * 1'000});
     net::JacketPacket packet;
     packet.counters =
         net::UbcdCounters{.sequence = static_cast<std::uint16_t>(n), .time_us = n * 10'000};

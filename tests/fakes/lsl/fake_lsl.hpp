@@ -23,6 +23,7 @@ class FakeLsl {
     find("fake_lsl_presence", presence_);
     find("fake_lsl_markers", markers_);
     find("fake_lsl_wrong_calls", wrong_calls_);
+    find("fake_lsl_exchanges", exchanges_);
     find("lsl_local_clock", local_clock_);
     reset_();
   }
@@ -54,6 +55,8 @@ class FakeLsl {
   std::string markers(const std::string& name) { return markers_(name.c_str()); }
   // Calls that the interface does not allow, a line each.
   std::string wrong_calls() { return wrong_calls_(); }
+  // How often the offset of that stream's clock was told.
+  int exchanges(const std::string& name) { return exchanges_(name.c_str()); }
   double local_clock() { return local_clock_(); }
 
  private:
@@ -70,6 +73,7 @@ class FakeLsl {
   void (*presence_)(const char*, int) = nullptr;
   const char* (*markers_)(const char*) = nullptr;
   const char* (*wrong_calls_)() = nullptr;
+  int (*exchanges_)(const char*) = nullptr;
   double (*local_clock_)() = nullptr;
 };
 

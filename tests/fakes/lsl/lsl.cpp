@@ -2,6 +2,7 @@
 // (signatures, error codes and waiting as liblsl 1.16 documents them), over streams that a test
 // keeps in this process (fake_lsl.hpp). A call that the interface does not allow is noted. A stream
 // that is not there is not waited for.
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -9,8 +10,10 @@
 #include <deque>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #define FAKE_LSL extern "C" __attribute__((visibility("default")))
@@ -29,7 +32,7 @@ struct Stream {
   };
   std::deque<Sample> samples;
   double correction_s = 0.0, uncertainty_s = 0.0;
-  int failing_exchanges = 0;
+  int failing_exchanges = 0, exchanges = 0;
   Presence presence = kThere;
   bool open = false;  // an inlet listens
   std::string markers;
@@ -43,6 +46,7 @@ struct Info {
 struct Inlet {
   std::string name;
   bool lost = false;
+  std::optional<double> asked_s;  // for the offset of its sender's clock, first
 };
 struct Outlet {
   std::string name;
@@ -199,17 +203,33 @@ FAKE_LSL unsigned long lsl_pull_chunk_f(void* handle, float* data, double* stamp
   }
 }
 
+// The first estimate is there 0.64 s after the first call: eight exchanges every 0.064 s, and 0.128
+// s for the last answer (liblsl's time_receiver.cpp).
 FAKE_LSL double lsl_time_correction_ex(void* handle, double* remote_s, double* uncertainty_s,
-                                       double, std::int32_t* error) {
-  const Lock lock(world().mutex);
+                                       double timeout_s, std::int32_t* error) {
+  constexpr double kFirst_s = 8 * 0.064 + 0.128;
+  Lock lock(world().mutex);
   put(error, kNone);
-  const Inlet* inlet = inlet_of(handle, "time_correction_ex");
+  Inlet* inlet = inlet_of(handle, "time_correction_ex");
+  if (inlet) {
+    if (!inlet->asked_s) inlet->asked_s = lsl_local_clock();
+    const double left_s = *inlet->asked_s + kFirst_s - lsl_local_clock();
+    const auto wait = std::chrono::duration<double>(std::min(timeout_s, left_s));
+    lock.unlock();
+    if (left_s > 0.0) std::this_thread::sleep_for(wait);
+    lock.lock();
+    if (left_s > timeout_s || !world().inlets.contains(handle)) {
+      put(error, kTimeout);
+      return 0.0;
+    }
+  }
   Stream* stream = inlet ? stream_of(inlet->name) : nullptr;
   if (!stream || stream->presence != kThere || stream->failing_exchanges > 0) {
     if (stream && stream->failing_exchanges > 0) --stream->failing_exchanges;
     put(error, kTimeout);
     return 0.0;
   }
+  ++stream->exchanges;
   *remote_s = lsl_local_clock() - stream->correction_s;
   *uncertainty_s = stream->uncertainty_s;
   return stream->correction_s;
@@ -299,4 +319,10 @@ FAKE_LSL const char* fake_lsl_wrong_calls() {
   const Lock lock(world().mutex);
   world().told = world().wrong;
   return world().told.c_str();
+}
+
+FAKE_LSL int fake_lsl_exchanges(const char* name) {
+  const Lock lock(world().mutex);
+  const Stream* stream = stream_of(name);
+  return stream ? stream->exchanges : 0;
 }

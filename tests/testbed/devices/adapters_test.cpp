@@ -3,6 +3,7 @@
 #include "engine/core/random.hpp"
 #include "engine/net/heart_strap.hpp"
 #include "engine/net/rough_link.hpp"
+#include "testbed/devices/gaze_adapter.hpp"
 #include "testbed/devices/jacket_adapter.hpp"
 #include "testbed/devices/microphone_adapter.hpp"
 #include "testbed/devices/strap_adapter.hpp"
@@ -67,6 +68,80 @@ TEST(SceneSources, WhatIsNoSourceIsRefusedWithItsLine) {
   }
   EXPECT_FALSE(load_text("[sources]\nsuit = \"mxtp udp\"\n").ok());
   EXPECT_FALSE(load_text("[physics]\n[sources]\nsuit = \"mxtp udp\"\n").ok());
+}
+
+// Each number of a packet, by hand from engine/net/README.md.
+TEST(GazeAdapter, APacketsBytesAreADirectionAndBadOnesAreCounted) {
+  const auto bytes =
+      bytes_of(std::string("55475a440101070040420f00000000009a99193f00000000cdcc4cbf4af2"));
+  const auto packet = net::decode_gaze(bytes);
+  ASSERT_TRUE(packet.ok()) << packet.error().message;
+  EXPECT_TRUE(packet->valid);
+  EXPECT_EQ(packet->sequence, 7u);
+  EXPECT_EQ(packet->time_us, 1'000'000u);
+  EXPECT_EQ(packet->direction, Vec3f(0.6F, 0.0F, -0.8F));
+  EXPECT_EQ(net::encode_gaze(*packet), bytes);
+  Bench bench("gaze = \"gaze udp\"\n");
+  GazeAdapter adapter;
+  adapter.take(bytes, false, kSecond_ns, bench.out);
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    auto wrong = bytes;
+    wrong[i] ^= std::byte{1};
+    adapter.take(wrong, false, kSecond_ns, bench.out);
+    adapter.take(net::Bytes(bytes).first(i), false, kSecond_ns, bench.out);
+  }
+  adapter.take(bytes, true, kSecond_ns, bench.out);
+  adapter.take(bytes, false, kSecond_ns, bench.out);
+  const net::LinkCounts& counts = adapter.counts();
+  EXPECT_EQ(counts.used, 1u);
+  EXPECT_EQ(counts.repeated, 1u);
+  EXPECT_EQ(counts.malformed, 2 * bytes.size() + 1);
+  expect_adds_up(counts);
+  const auto samples = bench.samples();
+  ASSERT_EQ(samples.size(), 1u);
+  EXPECT_LT(glm::distance(std::get<Gaze>(samples[0].payload).state.direction, Vec3(0.6, 0.0, -0.8)),
+            1e-6);
+}
+
+// Numbers wrap, packets are lost, come twice, late and in another order; the capture times are the
+// tracker's, on the host's clock.
+TEST(GazeAdapter, SamplesKeepTheirOrderAndTheirTimesThroughLossAndJitter) {
+  Bench bench("gaze = \"gaze udp\"\n");
+  GazeAdapter adapter;
+  net::RoughLink link({.jitter_s = 0.004, .loss = 0.05, .repeat = 0.05, .seed = 3});
+  constexpr TimeNs kOffset_ns = -7'000'000'000, kStart_ns = 100 * kSecond_ns;
+  constexpr int kCount = 70'000;
+  std::uint64_t sent = 0;
+  TimeNs last_ns = 0;
+  double worst_ms = 0.0;
+  for (int i = 0; i < kCount; ++i) {
+    const TimeNs now = kStart_ns + i * 8 * kMillisecond_ns;
+    link.send(now,
+              net::encode_gaze({.sequence = static_cast<std::uint16_t>(i),
+                                .time_us = static_cast<std::uint64_t>((now + kOffset_ns) / 1000)}));
+    ++sent;
+    while (!link.empty() && link.next().due_ns <= now) {
+      const auto packet = link.take_next();
+      adapter.take(packet.bytes, false, packet.due_ns, bench.out);
+    }
+    for (const Sample& sample : bench.samples()) {
+      const TimeNs captured_ns = sample.header.captured_ns;
+      EXPECT_GE(captured_ns, last_ns);
+      last_ns = captured_ns;
+      const TimeNs off_ns =
+          (captured_ns - kStart_ns + 4 * kMillisecond_ns) % (8 * kMillisecond_ns) -
+          4 * kMillisecond_ns;
+      if (i > kCount / 2)
+        worst_ms = std::max(worst_ms, std::abs(1e-6 * static_cast<double>(off_ns)));
+    }
+  }
+  const net::LinkCounts& counts = adapter.counts();
+  expect_adds_up(counts);
+  EXPECT_EQ(counts.malformed, 0u);
+  EXPECT_EQ(counts.older, 0u);
+  EXPECT_NEAR(static_cast<double>(counts.lost) / static_cast<double>(sent), 0.05, 0.01);
+  EXPECT_NEAR(static_cast<double>(counts.repeated) / static_cast<double>(sent), 0.05, 0.01);
+  EXPECT_LT(worst_ms, 1.0);
 }
 
 TEST(SuitPosture, JointsAndFingersComeBackThroughASuitsFrame) {

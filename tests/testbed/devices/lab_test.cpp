@@ -17,8 +17,8 @@ std::string sources() {
   };
   return fmt::format(
       "suit = \"mxtp udp {}\"\nstrap = \"strap udp {}\"\njacket = \"jacket udp {}\"\n"
-      "microphone = \"microphone udp {}\"\n",
-      port(), port(), port(), port());
+      "microphone = \"microphone udp {}\"\ngaze = \"gaze udp {}\"\n",
+      port(), port(), port(), port(), port());
 }
 
 struct Lab {
@@ -54,8 +54,8 @@ struct Lab {
 TEST(SimulatedLab, AWholeDiveWorksOverALossyNetworkAndReplaysToTheSameHashes) {
   Lab lab({.jitter_s = 0.02, .loss = 0.02});
   lab.run(test::kFast ? 75.0 : 5.0);
-  for (const DiverGroup group :
-       {DiverGroup::kBody, DiverGroup::kHands, DiverGroup::kButtons, DiverGroup::kHeart}) {
+  for (const DiverGroup group : {DiverGroup::kBody, DiverGroup::kHands, DiverGroup::kButtons,
+                                 DiverGroup::kHeart, DiverGroup::kGaze}) {
     EXPECT_EQ(lab.group(group).phase, GroupPhase::kLive) << name_of(group);
     EXPECT_EQ(lab.group(group).losses, 0u) << name_of(group);
   }
@@ -74,7 +74,13 @@ TEST(SimulatedLab, AWholeDiveWorksOverALossyNetworkAndReplaysToTheSameHashes) {
   }
   std::uint64_t received = 0;
   for (const auto& device : lab.devices->all()) received += device->clock_map().estimate().known;
-  EXPECT_EQ(received, 4u);
+  EXPECT_EQ(received, 5u);
+  // He looks around his course, and the tracker follows his eyes.
+  const diver::GazeState& gaze = lab.dive.simulation->inputs().humans()[0].gaze.state;
+  EXPECT_GT(gaze.fixations, 3u);
+  EXPECT_GT(gaze.saccades, 3u);
+  EXPECT_GT(gaze.direction.z, -1.01);
+  EXPECT_LT(gaze.direction.z, -0.8);
   const SampleLog log = recorded_run(*lab.dive.world, *lab.dive.simulation);
   const auto again = replay_run(*lab.dive.world, log, "lab");
   ASSERT_TRUE(again.ok()) << again.error().message;

@@ -66,7 +66,7 @@ void add_simulate(CLI::App& app, CommandLine& line) {
                          "simulated swimmer, or recordings (docs/devices.md)");
   command
       ->add_option("what", flags->what,
-                   "suit, strap, jacket, microphone or a source's name, one or more: sends to a "
+                   "suit, strap, jacket, microphone, gaze or a source's name, one or more: sends to a "
                    "dive that runs elsewhere. lab: a dive with all of its devices in simulated "
                    "time. flood: a dive that gets --rate packets a second. latency: measures the "
                    "time from a suit's packet to the picture that shows it")
