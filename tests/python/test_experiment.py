@@ -224,6 +224,15 @@ class Outcomes(unittest.TestCase):
         self.assertEqual([len(p.list_runs()) for p in made], [2 * len(k[1]) for k in outcomes.KNOBS])
 
 
+class Sonar(unittest.TestCase):
+    def test_the_sharks_sonar_is_ahead_of_the_rov_in_which_it_would_hear_nothing(self):
+        import shark_scene
+        import shark_senses
+        place = [float(x) for x in re.search(r"position_m = \[(.*)\]", shark_senses.SONAR)[1].split(",")]
+        self.assertIn("size_m = [0.457, 0.254, 0.575]", open(shark_scene.__file__).read())
+        self.assertLess(place[2], -0.575 / 2)
+
+
 class Pages(unittest.TestCase):
     def test_the_page_of_all_tells_what_failed_and_what_is_missing(self):
         criterion = {"measure": "m", "statistic": "median", "where": {}, "less": None, "found": 0.5, "n": 3, "at_most": 1.0,

@@ -65,6 +65,7 @@ MEASURES = {
     "beside_rms_m": ("m", "distance from the line over the 2 s after the block"),
     "largest_force_n": ("N", "largest force of a thruster"),
     "same_from_recording": ("yes or no", "whether the replay's judgement is the run's"),
+    "pings_used": ("", "share of the sonar's pings that corrected its track"),
     "track_error_m": ("m", "rms error of the shark's place, level, by the sonar"),
     "looks": ("", "of a detector that looks, until it says shark"),
     "wrong_words": ("", "how often it named something else before"),
@@ -231,6 +232,7 @@ class _Flight:
         if self.gaze:
             out |= {"looks": self.gaze.looks, "wrong_words": self.gaze.wrong, "look_ms": 1e3 * float(np.median(self.gaze.work_s or [0.0]))}
         if self.track and self.track.errors:
+            out["pings_used"] = self.track.used / max(1, self.track.pings)
             out["track_error_m"] = float(np.sqrt(np.mean(np.square(self.track.errors))))
         if blocked_s is not None:
             out |= {"time_to_block_s": blocked_s, "time_of_motion_s": blocked_s - self.told_s,

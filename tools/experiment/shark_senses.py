@@ -69,6 +69,7 @@ class Gaze:
 SONAR = """[[vehicles.sonars]]
 name = "sonar"
 kind = "imaging"
+position_m = [0, 0, -0.35]  # ahead of the drawn ROV: inside it hears nothing else
 range_m = [0.5, 10]
 azimuth_deg = 90
 elevation_deg = 28
@@ -92,7 +93,7 @@ class SonarTrack:
 
     def __init__(self, world, settings):
         self.world, self.at, self.moves, self.last, self.seen, self.errors = world, None, np.zeros(3), 0.0, -1, []
-        self.ping_hz = settings["sonar_hz"]
+        self.ping_hz, self.pings, self.used = settings["sonar_hz"], 0, 0
         world.images("rov_sonar/echoes", rate=settings["sonar_hz"])
 
     def estimate(self, told):
@@ -104,7 +105,9 @@ class SonarTrack:
         self.last = time
         if image is not None and image.sequence != self.seen:
             self.seen, heard = image.sequence, self._heard(image)
+            self.pings += 1
             if heard is not None and np.hypot(*(heard - self.at)[:2]) < 2.0:
+                self.used += 1
                 off = heard - self.at
                 self.at = self.at + self.ALPHA * off
                 self.moves = self.moves + self.BETA * off * self.ping_hz
