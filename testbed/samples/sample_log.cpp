@@ -13,6 +13,9 @@
 namespace neritic::testbed {
 namespace {
 
+// No sample is stamped so far ahead of the clock that it is by.
+constexpr std::int64_t kFarAhead_ns = 1'000'000'000;
+
 std::span<const std::byte> bytes_of(const std::string& text) {
   return std::as_bytes(std::span(text));
 }
@@ -123,7 +126,12 @@ void SampleLogWriter::sample(const Sample& sample) {
                                  {kKindKey, std::string(name_of(kind))},
                                  {kWayKey, enters(kind) ? kIn : kOut}}});
   }
-  const std::int64_t captured_ns = scene_ns(header.captured_ns);
+  // What came before the first step of a run at the host's pace: no step says yet what the host's
+  // clock showed, so it lies its age before the start.
+  const bool unknown = host_ns_ == now_ns_ && header.captured_ns > now_ns_ + kFarAhead_ns;
+  const std::int64_t captured_ns =
+      unknown ? now_ns_ - std::max<TimeNs>(header.arrived_ns - header.captured_ns, 0)
+              : scene_ns(header.captured_ns);
   const std::string bytes = sample_message(sample, {step_, captured_ns});
   out_.message({*channel, static_cast<std::uint32_t>(header.sequence), stamp(now_ns_),
                 stamp(captured_ns), bytes_of(bytes)});
