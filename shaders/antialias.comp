@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 
 // Smooths stairs on the display picture: where the luma of a 3x3 neighbourhood has a strong gradient, the
@@ -30,16 +31,21 @@ vec4 between(vec2 place, bool level, int layer) {
   return mix(a, b, level ? p.y - base.y : p.x - base.x);
 }
 
-// The pixel blended along its edge, if an edge runs there.
-vec3 smoothed(ivec3 at, vec4 center, ivec2 size) {
+// A block's pixels and those about it.
+const int kAround = kAntialiasBlock + 2;
+vec4 around[kAround][kAround];
+
+// The pixel (x, y) of a block, at `at`, blended along its edge, if an edge runs there.
+vec3 smoothed(ivec3 at, int x, int y, ivec2 size) {
+  vec4 center = around[y + 1][x + 1];
   float m = center.a;
-  float n = pixel(at + ivec3(0, -1, 0)).a, s = pixel(at + ivec3(0, 1, 0)).a;
-  float w = pixel(at + ivec3(-1, 0, 0)).a, e = pixel(at + ivec3(1, 0, 0)).a;
+  float n = around[y][x + 1].a, s = around[y + 2][x + 1].a;
+  float w = around[y + 1][x].a, e = around[y + 1][x + 2].a;
   float low = min(m, min(min(n, s), min(w, e))), high = max(m, max(max(n, s), max(w, e)));
   // Contrast that the eye takes for an edge: an eighth of the local light, at least 1/24.
   if (high - low < max(1.0 / 24.0, high / 8.0)) return center.rgb;
-  float nw = pixel(at + ivec3(-1, -1, 0)).a, ne = pixel(at + ivec3(1, -1, 0)).a;
-  float sw = pixel(at + ivec3(-1, 1, 0)).a, se = pixel(at + ivec3(1, 1, 0)).a;
+  float nw = around[y][x].a, ne = around[y][x + 2].a;
+  float sw = around[y + 2][x].a, se = around[y + 2][x + 2].a;
   // Sobel gradient; the edge runs across it.
   vec2 gradient = vec2((ne + 2.0 * e + se) - (nw + 2.0 * w + sw), (sw + 2.0 * s + se) - (nw + 2.0 * n + ne));
   vec2 along = vec2(-gradient.y, gradient.x);
@@ -56,11 +62,19 @@ vec3 smoothed(ivec3 at, vec4 center, ivec2 size) {
   return outer.a < low || outer.a > high ? inner.rgb : outer.rgb;
 }
 
+// A block of pixels a lane: neighbours share what lies about them.
 void main() {
-  ivec3 at = ivec3(gl_GlobalInvocationID);
+  ivec3 first = ivec3(gl_GlobalInvocationID) * ivec3(kAntialiasBlock, kAntialiasBlock, 1);
   ivec2 size = imageSize(out_image).xy;
-  if (at.x >= size.x || at.y >= size.y) return;
-  vec4 center = pixel(at);
-  bool rim = any(lessThan(at.xy, ivec2(kRim))) || any(greaterThanEqual(at.xy, size - kRim));
-  imageStore(out_image, at, vec4(rim ? center.rgb : smoothed(at, center, size), 1.0));
+  if (first.x >= size.x || first.y >= size.y) return;
+  [[unroll]] for (int y = 0; y < kAround; ++y)
+    [[unroll]] for (int x = 0; x < kAround; ++x)
+      around[y][x] = pixel(ivec3(clamp(first.xy + ivec2(x, y) - 1, ivec2(0), size - 1), first.z));
+  [[unroll]] for (int y = 0; y < kAntialiasBlock; ++y)
+    [[unroll]] for (int x = 0; x < kAntialiasBlock; ++x) {
+      ivec3 at = first + ivec3(x, y, 0);
+      bool rim = any(lessThan(at.xy, ivec2(kRim))) || any(greaterThanEqual(at.xy, size - kRim));
+      if (at.x < size.x && at.y < size.y)
+        imageStore(out_image, at, vec4(rim ? around[y + 1][x + 1].rgb : smoothed(at, x, y, size), 1.0));
+    }
 }

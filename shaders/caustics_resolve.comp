@@ -18,27 +18,35 @@ layout(set = 0, binding = kCausticsOut, rgba16f) writeonly uniform image2DArray 
 uint after(uint at, uint n) { return at + 1u < n ? at + 1u : 0u; }
 uint before(uint at, uint n) { return at > 0u ? at - 1u : n - 1u; }
 
-float smoothed(uint level, uint n, uvec2 at) {
-  uint columns[3] = {before(at.x, n), at.x, after(at.x, n)};
-  uint rows[3] = {before(at.y, n), at.y, after(at.y, n)};
-  uint sum = 0u;
-  [[unroll]] for (uint y = 0u; y < 3u; ++y)
-    [[unroll]] for (uint x = 0u; x < 3u; ++x) {
-      uint weight = (2u - (x & 1u ^ 1u)) * (2u - (y & 1u ^ 1u));
-      sum += weight * sums[(level * n + rows[y]) * n + columns[x]];
-    }
-  return float(sum) / float(16u * kCausticPart * kCausticPart);
+// A row's three texels about a column, the middle one twice.
+uint across(uint level, uint n, uint row, uint columns[3]) {
+  uint base = (level * n + row) * n;
+  return sums[base + columns[0]] + 2u * sums[base + columns[1]] + sums[base + columns[2]];
 }
 
 void main() {
   // Read before any branch (shared/even.glsl).
   uint n = params.texels, first_level = params.first_level, end_level = params.end_level;
-  uvec3 at = gl_GlobalInvocationID;
+  // kCausticRows rows a lane: each row of sums is read for three of them.
+  uvec3 at = gl_GlobalInvocationID * uvec3(1u, kCausticRows, 1u);
   at.z += first_level / kCausticLayerStep;
   if (at.x >= n || at.y >= n) return;
-  vec4 light = vec4(1.0);
+  uint columns[3] = {before(at.x, n), at.x, after(at.x, n)};
+  vec4 light[kCausticRows];
+  [[unroll]] for (uint y = 0u; y < kCausticRows; ++y) light[y] = vec4(1.0);
   uint base = at.z * kCausticLayerStep;
-  for (uint level = max(base, first_level); level < min(base + 4u, end_level); ++level)
-    light = mix(light, vec4(smoothed(level, n, at.xy)), equal(uvec4(0u, 1u, 2u, 3u), uvec4(level - base)));
-  imageStore(out_image, ivec3(at), light);
+  for (uint level = max(base, first_level); level < min(base + 4u, end_level); ++level) {
+    bvec4 own = equal(uvec4(0u, 1u, 2u, 3u), uvec4(level - base));
+    uint row = at.y;
+    uint above = across(level, n, before(row, n), columns), here = across(level, n, row, columns);
+    [[unroll]] for (uint y = 0u; y < kCausticRows; ++y) {
+      row = after(row, n);
+      uint below = across(level, n, row, columns);
+      light[y] = mix(light[y], vec4(float(above + 2u * here + below) / float(16u * kCausticPart * kCausticPart)), own);
+      above = here;
+      here = below;
+    }
+  }
+  [[unroll]] for (uint y = 0u; y < kCausticRows; ++y)
+    if (at.y + y < n) imageStore(out_image, ivec3(at.x, at.y + y, at.z), light[y]);
 }

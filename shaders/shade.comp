@@ -48,6 +48,7 @@ uint glow_samples() { return kGlowSamples; }
 #include "shared/even_light.glsl"
 #include "shared/caustic_light.glsl"
 #include "shared/shafts.h"
+#include "shared/shaft_texel.glsl"
 #include "shared/surface.glsl"
 #include "shared/sea_surface.glsl"
 #include "shared/visibility.glsl"
@@ -95,10 +96,11 @@ float lit_at(ivec3 at, float planar_m) {
   vec2 sum = vec2(0.0);
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 offset = ivec2(i & 1, i >> 1);
-    vec4 seen = texelFetch(shafts_image, ivec3(min(corner + offset, shaft_size - 1), at.z), 0);
+    vec2 seen = unpacked_shaft(
+        texelFetch(shafts_image, ivec3(min(corner + offset, shaft_size - 1), at.z), 0).r);
     vec2 w = mix(1.0 - part, part, vec2(offset));
     sum +=
-        vec2(seen.r, 1.0) * (w.x * w.y * (max(1.0 - abs(seen.a - own) * 20.0, 0.0) + 1e-3) + 1e-6);
+        vec2(seen.x, 1.0) * (w.x * w.y * (max(1.0 - abs(seen.y - own) * 20.0, 0.0) + 1e-3) + 1e-6);
   }
   return sum.x / sum.y;
 }

@@ -9,6 +9,7 @@
 // Samples of 16 neighbours differ, in an order that no frame changes; the blur that follows joins them.
 #include "shared/lighting.h"
 #include "shared/shafts.h"
+#include "shared/shaft_texel.glsl"
 #include "shared/visibility.glsl"
 
 layout(local_size_x = kShadeGroup, local_size_y = kShadeGroup) in;
@@ -20,7 +21,7 @@ layout(set = 0, binding = kShaftData, scalar) uniform Data { ShaftParams params;
 layout(set = 0, binding = kShaftDepth) uniform texture2DArray depth_image;
 layout(set = 0, binding = kShaftCascades) uniform texture2DArray cascade_image;
 layout(set = 0, binding = kShaftCaustics) uniform sampler2DArray caustics_image;
-layout(set = 0, binding = kShaftOut, rgba16f) writeonly uniform image2DArray out_image;
+layout(set = 0, binding = kShaftOut, r32f) writeonly uniform image2DArray out_image;
 
 layout(constant_id = kSpecShaftTerms) const uint kTerms = ~0u;
 layout(constant_id = kSpecShaftCascades) const uint kCascades = 0;
@@ -87,5 +88,5 @@ void main() {
     float part = all > 1e-6 ? clamp(reached / all, 0.0, 1.0) : 1.0;
     ratio = 1.0 + (sum / float(samples) - 1.0) * part;
   }
-  imageStore(out_image, at, vec4(ratio, 0.0, 0.0, visibility_distance(planar_m)));
+  imageStore(out_image, at, vec4(packed_shaft(ratio, visibility_distance(planar_m))));
 }

@@ -68,7 +68,8 @@ Result<graph::ImageHandle> Renderer::declare_caustics(graph::FrameGraph& graph,
         // Layers of other levels are read by nobody.
         const std::uint32_t first = params.first_level / shared::kCausticLayerStep,
                             last = (params.end_level - 2) / shared::kCausticLayerStep;
-        context.commands.dispatch(groups(n), groups(n), last - first + 1);
+        constexpr std::uint32_t kRows = shared::kCausticRows;
+        context.commands.dispatch(groups(n), groups((n + kRows - 1) / kRows), last - first + 1);
       });
   return resolved.out;
 }

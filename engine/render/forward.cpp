@@ -14,7 +14,10 @@ Result<graph::ImageHandle> Renderer::declare_forward(
   std::vector<MaskedDraws> masked;
   for (const std::uint32_t mask : view_masks_of(gbuffer.layers, device_)) {
     NERITIC_TRY(PreparedDraws prepared, prepare(scene, draws, draws.blended, GBufferKind::kSurface,
-                                                true, false, false, mask, {}, inscatter_samples));
+                                                true, false, false, mask, {},
+                                                {.terms = lighting.terms,
+                                                 .lamps = lighting.lamp_count,
+                                                 .inscatter_samples = inscatter_samples}));
     masked.push_back({mask, std::move(prepared)});
   }
   struct Data {

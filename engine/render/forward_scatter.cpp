@@ -116,7 +116,7 @@ Result<graph::ImageHandle> WaterPasses::declare_forward_scatter(
               data.levels[i], &levels[i].push, levels[i].width, levels[i].height);
         }
         commands.wait_for_dispatch();
-        run(scatter_add_, data.levels[0], data.hdr, nullptr, gbuffer.width, gbuffer.height);
+        run(scatter_add_, data.levels[0], data.hdr, nullptr, levels[0].width, levels[0].height);
       });
   return pass.hdr;
 }

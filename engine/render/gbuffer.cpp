@@ -55,18 +55,19 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
   std::vector<MaskedDraws> masked, glowing;
   for (const std::uint32_t mask : view_masks_of(layers, device_)) {
     NERITIC_TRY(PreparedDraws prepared,
-                prepare(scene, draws, draws.opaque, kind, false, motion, false, mask, parts));
+                prepare(scene, draws, draws.opaque, kind, false, motion, false, mask, parts, {}));
     // A sonar hears blended surfaces as solid ones; a camera draws them in the forward pass. What
     // glows is drawn last also where nothing of the glow is kept: the same pixels win.
     if (!surface) {
       const bool shape = kind == GBufferKind::kShape;
       NERITIC_TRY(PreparedDraws more, prepare(scene, draws, shape ? draws.opaque : draws.blended,
-                                              kind, false, motion, shape, mask, parts));
+                                              kind, false, motion, shape, mask, parts, {}));
       prepared.draws.insert(prepared.draws.end(), more.draws.begin(), more.draws.end());
     }
     masked.push_back({mask, std::move(prepared)});
     if (!surface || !scene.has_emission()) continue;
-    NERITIC_TRY(prepared, prepare(scene, draws, draws.opaque, kind, false, motion, true, mask));
+    NERITIC_TRY(prepared,
+                prepare(scene, draws, draws.opaque, kind, false, motion, true, mask, {}, {}));
     glowing.push_back({mask, std::move(prepared)});
   }
   NERITIC_TRY(const graph::ImageHandle hidden, declare_hidden(graph, prefix, views));

@@ -77,7 +77,7 @@ Result<Renderer::PreparedDraws> Renderer::prepare(const GpuScene& scene, const D
                                                   bool forward, bool motion, bool emissive,
                                                   std::uint32_t view_mask,
                                                   const GBufferParts& parts,
-                                                  std::uint32_t inscatter_samples) {
+                                                  const ForwardLight& light) {
   PreparedDraws prepared;
   for (const Draw& draw : draws) {
     const GpuMaterial& material = scene.materials()[draw.primitive->material];
@@ -88,12 +88,12 @@ Result<Renderer::PreparedDraws> Renderer::prepare(const GpuScene& scene, const D
                         : kind == GBufferKind::kShape ? RasterStage::kShape
                                                       : RasterStage::kSurface;
     if (geometry) stage = material.mask ? RasterStage::kGeometryMasked : RasterStage::kGeometry;
-    NERITIC_TRY(const gpu::Pipeline* pipeline,
-                raster_pipeline({stage, vk_topology(draw.primitive->topology),
-                                 stage == RasterStage::kGeometry ? larger : motion,
-                                 emissive && stage == RasterStage::kSurface, list.clipped,
-                                 view_mask, stage == RasterStage::kGeometry ? 0u : material.flags,
-                                 parts, inscatter_samples}));
+    NERITIC_TRY(
+        const gpu::Pipeline* pipeline,
+        raster_pipeline({stage, vk_topology(draw.primitive->topology),
+                         stage == RasterStage::kGeometry ? larger : motion,
+                         emissive && stage == RasterStage::kSurface, list.clipped, view_mask,
+                         stage == RasterStage::kGeometry ? 0u : material.flags, parts, light}));
     // A camera sees the sides that the material has. A sonar hears both sides of a sheet, but of a
     // solid with one side it needs no backs: see closed_surface.hpp.
     const bool both_sides = material.double_sided || (geometry && !draw.hides_back_faces);

@@ -64,7 +64,7 @@ std::span<const std::uint32_t> vertex_code(bool plain, bool clipped, bool larger
 Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
   if (const auto found = raster_.find(key); found != raster_.end()) return &found->second;
   const auto& [stage, topology, motion, emissive, clipped, view_mask, material_flags, parts,
-               inscatter_samples] = key;
+               light] = key;
   const bool forward = stage == RasterStage::kForward;
   const bool shape = stage == RasterStage::kShape;
   const bool surface = shape || stage == RasterStage::kSurface;
@@ -100,7 +100,11 @@ Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
     desc.constants.push_back({shared::kSpecMotion, motion});
     desc.constants.push_back({shared::kSpecMaterial, material_flags});
   }
-  if (forward) desc.constants.push_back({shared::kSpecForwardGlow, inscatter_samples});
+  if (forward)
+    desc.constants.insert(desc.constants.end(),
+                          {{shared::kSpecForwardGlow, light.inscatter_samples},
+                           {shared::kSpecForwardTerms, light.terms},
+                           {shared::kSpecForwardLamps, light.lamps}});
   desc.topology = topology;
   desc.depth_format = kDepthFormat;
   desc.view_mask = view_mask;

@@ -232,6 +232,7 @@ class Renderer {
     const char* result;  // of the image
     std::span<const std::uint32_t> code;
     std::vector<gpu::SpecConstant> constants;
+    std::uint32_t block = 1;  // pixels of the result a side to an invocation
   };
   Result<graph::ImageHandle> declare_filter(graph::FrameGraph& graph, const std::string& prefix,
                                             const PictureFilter& filter, gpu::Pipeline& pipeline,
@@ -248,10 +249,15 @@ class Renderer {
                                                   const std::string& prefix, const GBuffer& gbuffer,
                                                   const shared::ShadeTilesPush& push);
   enum class RasterStage { kGeometry, kGeometryMasked, kShape, kSurface, kForward };
-  // stage, topology, motion, emissive, clipped, view mask, the material's flags, parts; of the
-  // forward stage samples of inscatter, else 0.
+  // What the forward stage's shader is compiled with: the terms of light, the number of lamps,
+  // samples of inscatter. None in other stages.
+  struct ForwardLight {
+    std::uint32_t terms = 0, lamps = 0, inscatter_samples = 0;
+    auto operator<=>(const ForwardLight&) const = default;
+  };
+  // stage, topology, motion, emissive, clipped, view mask, the material's flags, parts.
   using RasterKey = std::tuple<RasterStage, VkPrimitiveTopology, bool, bool, bool, std::uint32_t,
-                               std::uint32_t, GBufferParts, std::uint32_t>;
+                               std::uint32_t, GBufferParts, ForwardLight>;
   explicit Renderer(gpu::Device& device) : device_(device), water_(device) {}
   Result<const gpu::Pipeline*> raster_pipeline(const RasterKey& key);
   // The pipelines that a list of draws needs, made before the pass records.
@@ -268,8 +274,7 @@ class Renderer {
   Result<PreparedDraws> prepare(const GpuScene& scene, const DrawList& list,
                                 const std::vector<Draw>& draws, GBufferKind kind, bool forward,
                                 bool motion, bool emissive, std::uint32_t view_mask,
-                                const GBufferParts& parts = {},
-                                std::uint32_t inscatter_samples = 0);
+                                const GBufferParts& parts, const ForwardLight& light);
   // Objects that draw passes borrow until the graph has run.
   struct RasterInputs {
     const GpuScene& scene;

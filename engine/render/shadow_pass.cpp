@@ -15,7 +15,7 @@ Result<graph::ImageHandle> Renderer::declare_shadow_maps(graph::FrameGraph& grap
   for (const ShadowMap& map : maps) {
     NERITIC_TRY(PreparedDraws prepared,
                 prepare(scene, map.draws, map.draws.opaque, GBufferKind::kGeometry, false, false,
-                        false, 0, kDepthAlone));
+                        false, 0, kDepthAlone, {}));
     layers.push_back(std::move(prepared));
   }
   struct Data {

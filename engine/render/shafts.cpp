@@ -8,6 +8,7 @@
 namespace neritic::render {
 namespace {
 
+constexpr VkFormat kShaftFormat = VK_FORMAT_R32_SFLOAT;  // shaders/shared/shaft_texel.glsl
 constexpr auto kShaftTexels = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
                kShaftUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
                kShaftStorage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
@@ -56,9 +57,10 @@ Result<graph::ImageHandle> Renderer::declare_shafts(graph::FrameGraph& graph,
         for (const graph::ImageHandle handle :
              {gbuffer.depth, gbuffer.normal, inputs.cascades, inputs.caustics})
           if (handle) builder.read(handle, graph::Access::kSampledCompute);
-        data.out = builder.write(builder.create_image(prefix + "shaft samples",
-                                                      {kHdrFormat, width, height, gbuffer.layers}),
-                                 graph::Access::kStorageWriteCompute);
+        data.out =
+            builder.write(builder.create_image(prefix + "shaft samples",
+                                               {kShaftFormat, width, height, gbuffer.layers}),
+                          graph::Access::kStorageWriteCompute);
       },
       [this, &pipeline, gbuffer, inputs, lighting, width, height, &views](
           const Data& data, graph::PassContext& context) {
@@ -87,7 +89,7 @@ Result<graph::ImageHandle> Renderer::declare_shafts(graph::FrameGraph& graph,
       [&](graph::PassBuilder& builder, Data& data) {
         builder.read(taken.out, graph::Access::kSampledCompute);
         data.out = builder.write(
-            builder.create_image(prefix + "shafts", {kHdrFormat, width, height, gbuffer.layers}),
+            builder.create_image(prefix + "shafts", {kShaftFormat, width, height, gbuffer.layers}),
             graph::Access::kStorageWriteCompute);
       },
       [this, in = taken.out, width, height, layers = gbuffer.layers](const Data& data,

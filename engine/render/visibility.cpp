@@ -92,7 +92,9 @@ Result<graph::ImageHandle> Renderer::declare_visibility(
             visibility_blur_,
             {gpu::bound_texel_image(shared::kVisibilityBlurIn, context.image(in).view()),
              gpu::bound_storage_image(shared::kVisibilityBlurOut, context.image(data.out).view())});
-        context.commands.dispatch(groups(width), groups(height), layers);
+        constexpr std::uint32_t kBlock = shared::kVisibilityBlurBlock;
+        context.commands.dispatch(groups((width + kBlock - 1) / kBlock),
+                                  groups((height + kBlock - 1) / kBlock), layers);
       });
   return blurred.out;
 }

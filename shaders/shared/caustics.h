@@ -38,6 +38,8 @@ NERITIC_CONST float kCausticStep = 1.6f;
 // A ray's energy, in whole numbers, so that sums do not depend on their order and none is lost: the
 // square of kCausticPart.
 NERITIC_CONST uint kCausticPart = 64;
+// Rows of texels that an invocation of the resolve pass smooths.
+NERITIC_CONST uint kCausticRows = 8;
 NERITIC_CONST uint kCausticsParams = 0;
 NERITIC_CONST uint kCausticsSums = 1;
 NERITIC_CONST uint kCausticsOut = 2;  // resolve: rgba16f

@@ -6,6 +6,8 @@
 
 layout(constant_id = kSpecMultiview) const bool kMultiview = true;
 layout(constant_id = kSpecForwardGlow) const uint kGlowSamples = 4;
+layout(constant_id = kSpecForwardTerms) const uint kTerms = ~0u;
+layout(constant_id = kSpecForwardLamps) const uint kLamps = kMaxLamps;
 
 layout(location = 0) in vec3 normal;
 layout(location = 1) flat in uint label;
@@ -18,10 +20,10 @@ layout(set = 0, binding = kRasterViews, scalar) uniform Views { View views[kMaxV
 layout(set = 0, binding = kRasterLighting, scalar) uniform Light { Lighting light; };
 
 bool light_has(uint term) {
-  return (light.terms & term) != 0u;
+  return (kTerms & term) != 0u;
 }
 uint lamp_count() {
-  return light.lamp_count;
+  return kLamps;
 }
 uint glow_samples() {
   return kGlowSamples;

@@ -118,8 +118,16 @@ struct ShadePush {
 struct ShadeTilesPush {
   uint wide;  // tiles of the picture
   uint high;
+  uint sea_first;  // rows of tiles from which the wavy surface can be seen
+  uint sea_end;
+  float deep_m;  // of the eye below the surface's lowest trough; not over 0: all sights can meet it
+  float near_m;
+  float ray_corner_y;  // upwards, of a view's rays
+  float ray_dx_y;
+  float ray_dy_y;
 };
-NERITIC_CONST uint kShadeTileLists = 2;
+// A list's number: 1: with solids, plus 2: with the wavy surface.
+NERITIC_CONST uint kShadeTileLists = 4;
 NERITIC_CONST uint kShadeTileHead = 4;
 NERITIC_CONST uint kShadeTilesDepth = 0;
 NERITIC_CONST uint kShadeTilesOut = 1;
@@ -133,10 +141,13 @@ NERITIC_CONST uint kSpecLumaInAlpha = 0;
 // Bindings of the antialias pass.
 NERITIC_CONST uint kAntialiasIn = 0;
 NERITIC_CONST uint kAntialiasOut = 1;
+NERITIC_CONST int kAntialiasBlock = 2;  // pixels a side to an invocation
 
 // Bindings of the resize pass.
 NERITIC_CONST uint kResizeIn = 0;
 NERITIC_CONST uint kResizeOut = 1;
+// Pixels a side that an invocation of it makes, from as many and one more a side of the source.
+NERITIC_CONST uint kResizeBlock = 4;
 
 NERITIC_SHARED_END
 #endif

@@ -119,6 +119,8 @@ NERITIC_CONST uint kSpecMotion = 0;
 NERITIC_CONST uint kSpecMaterial = 1;     // the material's flags
 NERITIC_CONST uint kSpecMultiview = 2;    // 0: the set has one view
 NERITIC_CONST uint kSpecForwardGlow = 3;  // samples of a lamp's beam before blended surfaces
+NERITIC_CONST uint kSpecForwardTerms = 4;  // of light, and the number of lamps
+NERITIC_CONST uint kSpecForwardLamps = 5;
 
 struct RasterPush {
   vec2 target_size;  // pixels, for motion

@@ -21,7 +21,7 @@ NERITIC_CONST uint kShaftData = 3;
 NERITIC_CONST uint kShaftDepth = 4;
 NERITIC_CONST uint kShaftCascades = 5;
 NERITIC_CONST uint kShaftCaustics = 6;
-NERITIC_CONST uint kShaftOut = 7;  // rgba16f; red: the ratio, alpha: visibility_distance
+NERITIC_CONST uint kShaftOut = 7;  // r32f: shared/shaft_texel.glsl
 // Specialisation constants: the terms of light, and the sun's maps (0: none).
 NERITIC_CONST uint kSpecShaftTerms = 0;
 NERITIC_CONST uint kSpecShaftCascades = 1;

@@ -42,6 +42,7 @@ NERITIC_CONST uint kSpecShadowTaps = 3;
 
 NERITIC_CONST uint kVisibilityBlurIn = 0;
 NERITIC_CONST uint kVisibilityBlurOut = 1;
+NERITIC_CONST int kVisibilityBlurBlock = 2;  // pixels a side to an invocation
 
 // Scattering turns the sun's beam: an event adds this much to the variance of its tangent. Half of
 // what particles scatter lies within 5 degrees (Petzold 1972); (0.14 rad)^2 of the core.

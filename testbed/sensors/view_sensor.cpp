@@ -1,5 +1,7 @@
 #include "testbed/sensors/view_sensor.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/core/check.hpp"
@@ -25,7 +27,8 @@ Status check_size(const gpu::Device& device, const std::string& what,
 // Pixels by which coarser meshes may differ (scene::MeshLevel); of the sun's maps texels. None
 // where each pixel has a shadow of its own.
 double mesh_error_px(const scene::PictureDetail& detail) {
-  return 0.5 * (static_cast<double>(detail.visibility_step) - 1.0);
+  constexpr std::array<double, 4> kByStep{0.0, 0.5, 1.0, 2.5};
+  return kByStep[std::clamp(detail.visibility_step, 1u, 4u) - 1u];
 }
 
 // Gains that make a white card at the camera neutral, as the water leaves daylight there.

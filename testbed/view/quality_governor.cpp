@@ -58,6 +58,7 @@ const std::array<scene::PictureDetail, kLightLevels> kLight{{{},
 constexpr std::array<double, kLightLevels> kLightCost{1.0, 0.75, 0.6, 0.5};
 
 constexpr double kMissed = 1.08;  // of the budget: slower is a miss
+constexpr double kFarOver = 3.0;
 constexpr double kRoom =
     0.85;  // of the budget: the most work that a better rung may be expected to take
 constexpr std::size_t kInFlight = 3;  // frames after a change that were begun before it
@@ -105,7 +106,13 @@ void QualityGovernor::add(double interval_ms, double work_ms) {
   }
   interval_ms_[frames_ % kFrames] = interval_ms;
   work_ms_[frames_ % kFrames] = std::min(work_ms, interval_ms);
-  if (++frames_ < kFrames) return;
+  ++frames_;
+  // Far over the budget two frames are enough: five would show for seconds what is a slide show.
+  if (frames_ == 2 && std::min(interval_ms_[0], interval_ms_[1]) > kFarOver * budget_ms_) {
+    go_down(std::min(interval_ms_[0], interval_ms_[1]));
+    return;
+  }
+  if (frames_ < kFrames) return;
   const double interval = middle(interval_ms_);
   if (interval > kMissed * budget_ms_) {
     go_down(interval);
@@ -115,14 +122,15 @@ void QualityGovernor::add(double interval_ms, double work_ms) {
   }
 }
 
-// To the rung whose cost is expected to fit: at least one, at most three, since fixed costs make
-// the guess too good.
+// To the rung whose cost is expected to fit: at least one, and at most three (eight, where frames
+// are far over the budget), since fixed costs make the guess too good.
 void QualityGovernor::go_down(double interval_ms) {
   if (rung_ + 1 >= kRungs.size()) return;
   if (climbed_ && on_rung_s_ <= kSettled_s)
     wait_s_[rung_] = std::min(2.0 * wait_s_[rung_], kLongestWait_s);
   const double wanted = cost(quality()) * budget_ms_ / interval_ms;
-  const std::size_t farthest = std::min(rung_ + 3, kRungs.size() - 1);
+  const std::size_t reach = interval_ms > kFarOver * budget_ms_ ? 8 : 3;
+  const std::size_t farthest = std::min(rung_ + reach, kRungs.size() - 1);
   std::size_t next = rung_ + 1;
   while (next < farthest && cost(kRungs[next]) > wanted) ++next;
   rung_ = next;

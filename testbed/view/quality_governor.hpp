@@ -50,7 +50,7 @@ class QualityGovernor {
   double budget_ms_;
   std::size_t rung_ = 0;
   std::array<double, kFrames> interval_ms_{}, work_ms_{};
-  std::size_t frames_ = 0, skip_ = 0;
+  std::size_t frames_ = 0, skip_ = 3;  // the first frames make pipelines
   double on_rung_s_ = 0.0;
   // Each rung's wait before a climb to it.
   std::array<double, 16> wait_s_ = filled(1.0);

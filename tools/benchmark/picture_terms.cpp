@@ -76,32 +76,81 @@ Contender passes_of(const std::string& name, Session& session) {
           .warm = true};
 }
 
+// A group's result by its name, where the filter names one.
+bool wants_result(const Suite& suite, const std::string& name) {
+  const std::string& filter = suite.options().filter;
+  return filter.find('/') == std::string::npos ||
+         ("picture_terms/" + name).find(filter) != std::string::npos;
+}
+
+Status price_terms(Suite& suite, gpu::Device& device, const std::string& file, Session& all) {
+  for (const Term& term : terms()) {
+    const std::string name = term.name;
+    if (!wants_result(suite, "with_" + name) && !wants_result(suite, "without_" + name)) continue;
+    NERITIC_TRY(const auto without, open_scene(suite, device, file, [&](scene::Scene& scene) {
+                  name_everything(scene);
+                  term.leave_out(scene);
+                }));
+    NERITIC_TRY_STATUS(
+        suite.measure({passes_of("with_" + name, all), passes_of("without_" + name, *without)}, 8));
+    const Measured* with = suite.find("picture_terms/with_" + name);
+    const Measured* bare = suite.find("picture_terms/without_" + name);
+    if (with && bare) suite.note("price_of_" + name + "_ms", with->min_ms() - bare->min_ms());
+  }
+  return {};
+}
+
+// A school in the default scene as a scene file has it: whole frames, since the processor places
+// the fish.
+Status price_fish(Suite& suite, gpu::Device& device) {
+  if (!wants_result(suite, "fish_10000") && !wants_result(suite, "fish_none")) return {};
+  NERITIC_TRY(const auto none, open_scene(suite, device, "wreck.toml"));
+  NERITIC_TRY(const auto school, open_scene(suite, device, "../benchmarks/school.toml"));
+  FrameRequest request;
+  request.cameras = {0};
+  request.time_s = 20.0;
+  request.next_time_s = 20.0 + 1.0 / 30.0;
+  request.capture = testbed::Capture{.motion = false}.without_geometry();
+  NERITIC_TRY_STATUS(suite.measure({frames_of("picture_terms/fish_10000", *school, request),
+                                    frames_of("picture_terms/fish_none", *none, request)},
+                                   12));
+  const Measured* with = suite.find("picture_terms/fish_10000");
+  const Measured* bare = suite.find("picture_terms/fish_none");
+  if (with && bare) suite.aim_most("10 000 fish", "ms more", with->min_ms() - bare->min_ms(), 20.0);
+  return {};
+}
+
 }  // namespace
 
 Status bench_picture_terms(Suite& suite, gpu::Device& device) {
   if (!suite.wants("picture_terms")) return {};
   const std::string file = "wreck.toml";
-  NERITIC_TRY(const auto all, open_scene(suite, device, file, name_everything));
-  for (const Term& term : terms()) {
-    NERITIC_TRY(const auto without, open_scene(suite, device, file, [&](scene::Scene& scene) {
-                  name_everything(scene);
-                  term.leave_out(scene);
-                }));
-    const std::string name = term.name;
-    NERITIC_TRY_STATUS(suite.measure(
-        {passes_of("with_" + name, *all), passes_of("without_" + name, *without)}, 8));
-    const Measured* with = suite.find("picture_terms/with_" + name);
-    const Measured* bare = suite.find("picture_terms/without_" + name);
-    if (with && bare) suite.note("price_of_" + name + "_ms", with->min_ms() - bare->min_ms());
+  std::unique_ptr<Session> all;
+  if (wants_result(suite, "everything") ||
+      suite.options().filter.find("/with") != std::string::npos) {
+    NERITIC_TRY(all, open_scene(suite, device, file, name_everything));
+    NERITIC_TRY_STATUS(price_terms(suite, device, file, *all));
   }
-  NERITIC_TRY(const auto draft, open_scene(suite, device, file, [](scene::Scene& scene) {
-                name_everything(scene);
-                scene.cameras[0].detail = scene::picture_level("draft").detail;
-              }));
-  NERITIC_TRY_STATUS(
-      suite.measure({passes_of("everything", *all), passes_of("everything_draft", *draft)}, 12));
+  if (wants_result(suite, "everything") || wants_result(suite, "everything_draft")) {
+    NERITIC_TRY(const auto draft, open_scene(suite, device, file, [](scene::Scene& scene) {
+                  name_everything(scene);
+                  scene.cameras[0].detail = scene::picture_level("draft").detail;
+                }));
+    std::vector<Contender> levels{passes_of("everything_draft", *draft)};
+    if (all) levels.push_back(passes_of("everything", *all));
+    NERITIC_TRY_STATUS(suite.measure(std::move(levels), 12));
+  }
+  if (wants_result(suite, "lit_23k")) {
+    NERITIC_TRY(const auto small, open_scene(suite, device, "../benchmarks/lit_23k.toml"));
+    Contender picture = passes_of("lit_23k", *small);
+    picture.facts["size"] = std::vector<double>{640, 480};
+    NERITIC_TRY_STATUS(suite.measure({picture}, 12));
+  }
+  NERITIC_TRY_STATUS(price_fish(suite, device));
   suite.aim_ms("default scene with everything named", "picture_terms/everything", 250.0);
   suite.aim_ms("the same at draft", "picture_terms/everything_draft", 60.0);
+  suite.aim_ms("640x480 of 23 000 triangles with sun, two lamps, inscatter and snow",
+               "picture_terms/lit_23k", 60.0);
   return {};
 }
 
