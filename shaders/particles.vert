@@ -13,8 +13,6 @@
 
 layout(constant_id = kSpecBubbles) const bool kBubbles = false;
 layout(constant_id = kSpecParticleMultiview) const bool kMultiview = true;
-layout(constant_id = kSpecParticleTerms) const uint kTerms = ~0u;
-layout(constant_id = kSpecParticleLamps) const uint kLamps = kMaxLamps;
 
 layout(location = kParticlePosition) in vec4 in_position;
 layout(location = kParticleMoved) in vec4 in_moved;
@@ -24,8 +22,8 @@ layout(set = 0, binding = kParticleViews, scalar) uniform Views { View views[kMa
 layout(set = 0, binding = kParticleLighting, scalar) uniform Light { Lighting light; };
 layout(push_constant, scalar) uniform Push { ParticlePush push; };
 
-bool light_has(uint term) { return (kTerms & term) != 0u; }
-uint lamp_count() { return kLamps; }
+bool light_has(uint term) { return (light.terms & term) != 0u; }
+uint lamp_count() { return light.lamp_count; }
 uint glow_samples() { return 4u; }
 
 #include "shared/water.glsl"

@@ -11,12 +11,11 @@
 namespace neritic::render {
 namespace {
 
-// What tells the pipelines of particles apart (WaterPasses::particles_).
-std::array<std::uint32_t, 5> particle_key(std::uint32_t view_mask, bool of_bubbles,
-                                          const shared::Lighting& lighting,
-                                          const ShaftInputs* shafts) {
-  return {view_mask, of_bubbles, lighting.terms, lighting.lamp_count,
-          shafts ? 1u + shafts->cascade_count : 0u};
+// A view mask has six bits at most. cascades: of the sun's maps, where there are shafts.
+std::uint32_t pipeline_key(std::uint32_t view_mask, bool of_bubbles, const ShaftInputs* shafts) {
+  static_assert(shared::kMaxViews < 24 && shared::kMaxCascades < 8);
+  return view_mask | (of_bubbles ? 1u << 31 : 0u) |
+         (shafts ? 1u << 30 | shafts->cascade_count << 24 : 0u);
 }
 
 }  // namespace
@@ -38,7 +37,7 @@ Result<graph::ImageHandle> WaterPasses::declare_particles(
   const std::uint32_t others = static_cast<std::uint32_t>(particles.size()) - bubbles;
   for (const std::uint32_t mask : masks)
     for (const bool of_bubbles : {true, false}) {
-      gpu::Pipeline& pipeline = particles_[particle_key(mask, of_bubbles, lighting, shafts)];
+      gpu::Pipeline& pipeline = particles_[pipeline_key(mask, of_bubbles, shafts)];
       if (pipeline || (of_bubbles ? bubbles : others) == 0) continue;
       gpu::GraphicsPipelineDesc desc;
       desc.name = "particles";
@@ -55,9 +54,7 @@ Result<graph::ImageHandle> WaterPasses::declare_particles(
           desc.layout.bindings.push_back({binding, type});
       desc.layout.push_constant_bytes = sizeof(shared::ParticlePush);
       desc.constants = {{shared::kSpecBubbles, of_bubbles},
-                        {shared::kSpecParticleMultiview, mask != 0},
-                        {shared::kSpecParticleTerms, lighting.terms},
-                        {shared::kSpecParticleLamps, lighting.lamp_count}};
+                        {shared::kSpecParticleMultiview, mask != 0}};
       if (shafts) desc.constants.push_back({shared::kSpecParticleCascades, shafts->cascade_count});
       desc.streams = {
           {sizeof(shared::Particle),
@@ -132,8 +129,7 @@ Result<graph::ImageHandle> WaterPasses::declare_particles(
           for (const bool of_bubbles : {true, false}) {
             const std::uint32_t count = of_bubbles ? bubbles : others;
             if (count == 0) continue;
-            const gpu::Pipeline& pipeline =
-                particles_.at(particle_key(mask, of_bubbles, lighting, lit));
+            const gpu::Pipeline& pipeline = particles_.at(pipeline_key(mask, of_bubbles, lit));
             commands.bind_pipeline(pipeline);
             commands.bind(pipeline, set0);
             commands.push(pipeline, push);

@@ -2,7 +2,6 @@
 // only where the scene names it. Pipelines are created at first use. Rendering thread only.
 #pragma once
 
-#include <array>
 #include <map>
 #include <string>
 #include <vector>
@@ -52,9 +51,8 @@ class WaterPasses {
   gpu::Device& device_;
   gpu::Pipeline scatter_first_, scatter_down_, scatter_up_, scatter_add_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, gpu::Pipeline> shimmer_;  // layers, waves
-  // By view mask, whether of bubbles, terms of light, number of lamps, light of the shafts.
-  std::map<std::array<std::uint32_t, 5>, gpu::Pipeline> particles_;
-  gpu::Sampler tile_sampler_;  // linear, repeating; with shafts
+  std::map<std::uint32_t, gpu::Pipeline> particles_;  // by view mask and light
+  gpu::Sampler tile_sampler_;                         // linear, repeating; with shafts
 };
 
 // The column's transitions as a view about the origin sees them at a time. The waves are a sum of

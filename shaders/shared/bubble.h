@@ -10,8 +10,6 @@ NERITIC_SHARED_BEGIN
 // views.
 NERITIC_CONST uint kSpecBubbles = 0;
 NERITIC_CONST uint kSpecParticleMultiview = 1;
-NERITIC_CONST uint kSpecParticleTerms = 3;  // of light, and the number of lamps
-NERITIC_CONST uint kSpecParticleLamps = 4;
 // Wobbles of a bubble a second (ellipsoidal ones swing some five times: Clift, Grace and Weber
 // 1978, ch. 7).
 NERITIC_CONST float kWobble_hz = 5.0f;
