@@ -133,6 +133,7 @@ Result<Vehicle> make_vehicle(const VehicleParameters& p) {
   NERITIC_TRY_STATUS(check_thrusters(p.thrusters));
   NERITIC_TRY_STATUS(check_lag(p.lag));
   if (p.tether) NERITIC_TRY_STATUS(check_tether(*p.tether));
+  if (p.battery) NERITIC_TRY_STATUS(check_battery(*p.battery));
   v.inverse_mass = inverse(v.mass);
   v.linear_damping = p.linear_damping;
   v.quadratic_damping = p.quadratic_damping;

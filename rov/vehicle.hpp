@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/core/result.hpp"
+#include "rov/battery.hpp"
 #include "rov/tether.hpp"
 #include "rov/thruster_lag.hpp"
 #include "rov/vector6.hpp"
@@ -43,6 +44,7 @@ struct VehicleParameters {
   std::vector<Thruster> thrusters;
   ThrusterLag lag;  // of all thrusters
   std::optional<Tether> tether;
+  std::optional<Battery> battery;
 };
 
 // Number of step lengths for which the lag's exact map is stored.

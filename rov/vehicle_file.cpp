@@ -30,6 +30,7 @@ constexpr std::string_view kVehicleKeys[] = {"name",
                                              "thrust_table",
                                              "voltage_v",
                                              "tether",
+                                             "battery",
                                              "outline",
                                              "control",
                                              "imu",
@@ -44,6 +45,9 @@ constexpr std::string_view kThrusterKeys[] = {"name", "position_m", "direction",
 constexpr std::string_view kTetherKeys[] = {"attachment_m",   "length_m",        "diameter_m",
                                             "net_weight_n_m", "stiffness_n",     "damping_n_s",
                                             "normal_drag",    "tangential_drag", "water_kg_m3"};
+constexpr std::string_view kBatteryKeys[] = {"capacity_wh",    "full_v",  "empty_v",
+                                             "resistance_ohm", "hotel_w", "propeller_m",
+                                             "efficiency",     "charge"};
 constexpr std::string_view kControlKeys[] = {
     "kp", "ki", "kd", "u_max", "i_max", "zone", "rate_hz", "saturation", "feed_forward"};
 
@@ -134,6 +138,16 @@ void read_tether(const CaseField& field, Tether& tether) {
   for (const auto& [key, member] : numbers) tether.*member = field[key].number(tether.*member);
 }
 
+void read_battery(const CaseField& field, Battery& battery) {
+  field.allow(kBatteryKeys);
+  const std::pair<const char*, double Battery::*> numbers[] = {
+      {"capacity_wh", &Battery::capacity_wh}, {"full_v", &Battery::full_v},
+      {"empty_v", &Battery::empty_v},         {"resistance_ohm", &Battery::resistance_ohm},
+      {"hotel_w", &Battery::hotel_w},         {"propeller_m", &Battery::propeller_m},
+      {"efficiency", &Battery::efficiency},   {"charge", &Battery::charge}};
+  for (const auto& [key, member] : numbers) battery.*member = field[key].number(battery.*member);
+}
+
 void read_gains(const CaseField& field, ControlGains& gains) {
   field.allow(kControlKeys);
   const std::pair<const char*, double PidAxis::*> lists[] = {
@@ -172,6 +186,10 @@ Result<VehicleFile> parse_vehicle(std::string_view text, const std::string& name
     p.tether = Tether{.water_kg_m3 = water_kg_m3};
     read_tether(root["tether"], *p.tether);
   }
+  if (root["battery"].present()) {
+    p.battery = Battery{.water_kg_m3 = water_kg_m3};
+    read_battery(root["battery"], *p.battery);
+  }
   out.gains = default_gains();
   if (root["control"].present()) read_gains(root["control"], out.gains);
   out.voltage_v = root["voltage_v"].number(16.0, 1.0, 1000.0);
@@ -192,10 +210,16 @@ Result<VehicleFile> read_vehicle(const std::filesystem::path& path, double water
   return parse_vehicle(text, path.string(), path.parent_path(), water_kg_m3);
 }
 
-void drive(const VehicleFile& file, Inputs& inputs) {
+void drive(const VehicleFile& file, Inputs& inputs, const BatteryState* battery) {
+  const std::size_t count = file.parameters.thrusters.size();
+  if (battery != nullptr && battery->empty != 0) {
+    std::fill_n(inputs.thruster_n.begin(), count, 0.0);
+    return;
+  }
   if (!file.curve) return;
-  for (std::size_t i = 0; i < file.parameters.thrusters.size(); ++i)
-    inputs.thruster_n[i] = file.curve->realised_n(inputs.thruster_n[i], file.voltage_v);
+  const double voltage_v = battery != nullptr ? battery->voltage_v : file.voltage_v;
+  for (std::size_t i = 0; i < count; ++i)
+    inputs.thruster_n[i] = file.curve->realised_n(inputs.thruster_n[i], voltage_v);
 }
 
 }  // namespace neritic::rov

@@ -32,7 +32,8 @@ Result<VehicleFile> read_vehicle(const std::filesystem::path& path, double water
 Result<VehicleFile> parse_vehicle(std::string_view text, const std::string& name,
                                   const std::filesystem::path& folder, double water_kg_m3);
 
-// Commands in newtons as the speed controllers realise them: dead band, table, saturation.
-void drive(const VehicleFile& file, Inputs& inputs);
+// Commands in newtons as the speed controllers realise them: dead band, table, saturation. With a
+// battery at its voltage, and none once it is empty.
+void drive(const VehicleFile& file, Inputs& inputs, const BatteryState* battery = nullptr);
 
 }  // namespace neritic::rov

@@ -36,6 +36,12 @@ const std::map<std::string, std::string, std::less<>>& definitions() {
        "float64[9] linear_acceleration_covariance\n"},
       {"sensor_msgs/FluidPressure",
        "std_msgs/Header header\nfloat64 fluid_pressure\nfloat64 variance\n"},
+      {"sensor_msgs/BatteryState",
+       "std_msgs/Header header\nfloat32 voltage\nfloat32 temperature\nfloat32 current\n"
+       "float32 charge\nfloat32 capacity\nfloat32 design_capacity\nfloat32 percentage\n"
+       "uint8 power_supply_status\nuint8 power_supply_health\nuint8 power_supply_technology\n"
+       "bool present\nfloat32[] cell_voltage\nfloat32[] cell_temperature\nstring location\n"
+       "string serial_number\n"},
       {"sensor_msgs/Range",
        "uint8 ULTRASOUND=0\nuint8 INFRARED=1\nstd_msgs/Header header\nuint8 radiation_type\n"
        "float32 field_of_view\nfloat32 min_range\nfloat32 max_range\nfloat32 range\n"},

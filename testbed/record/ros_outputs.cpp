@@ -76,6 +76,28 @@ void put_range(CdrWriter& cdr, const rov::Altimeter& altimeter,
                                 : std::numeric_limits<float>::infinity());
 }
 
+// NaN: not measured, as the message's definition asks. Discharging current is negative there.
+void put_battery(CdrWriter& cdr, const rov::Battery& battery, const BatteryReading& reading) {
+  constexpr std::uint8_t kDischarging = 2, kGood = 1, kDead = 3, kLithiumIon = 2;
+  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+  const double capacity_ah = rov::capacity_ah(battery);
+  cdr.number(static_cast<float>(reading.voltage_v));
+  cdr.number(kUnknown);
+  cdr.number(static_cast<float>(-reading.current_a));
+  cdr.number(static_cast<float>(reading.charge * capacity_ah));
+  cdr.number(static_cast<float>(capacity_ah));
+  cdr.number(static_cast<float>(capacity_ah));
+  cdr.number(static_cast<float>(reading.charge));
+  cdr.number(kDischarging);
+  cdr.number(reading.empty != 0 ? kDead : kGood);
+  cdr.number(kLithiumIon);
+  cdr.number(static_cast<std::uint8_t>(1));
+  cdr.count(0);
+  cdr.count(0);
+  cdr.text("");
+  cdr.text("");
+}
+
 }  // namespace
 
 std::uint16_t RosOutputs::channel(const std::string& topic, const char* type,
@@ -180,6 +202,11 @@ bool RosOutputs::output(const Sample& sample, std::int64_t log_ns, std::int64_t 
     cdr.number(pressure->pressure_pa);
     cdr.number(0.0);
     send(topic_of(owner) + "/fluid_pressure", "sensor_msgs/msg/FluidPressure");
+  }
+  if (const auto* battery = std::get_if<BatteryReading>(&sample.payload)) {
+    cdr.header(stamp_ns, owner + "/base_link");
+    put_battery(cdr, *world_.vehicles()[stream.owner].file.parameters.battery, *battery);
+    send(topic_of(owner) + "/battery_state", "sensor_msgs/msg/BatteryState");
   }
   if (const auto* usbl = std::get_if<rov::UsblReading>(&sample.payload); usbl && usbl->heard != 0) {
     cdr.header(stamp_ns, kWorldFrame);

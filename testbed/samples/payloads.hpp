@@ -422,6 +422,22 @@ struct TetherReading {
   }
 };
 
+// The battery of a vehicle whose file names one.
+struct BatteryReading {
+  double voltage_v = 0.0, current_a = 0.0;  // at its terminals; positive: it is drawn from
+  double charge = 0.0;                      // of 1
+  double left_s = 0.0;                      // at the power of now
+  std::uint64_t empty = 0;                  // 1: no thruster has power
+
+  static void fields(auto&& field, auto& self) {
+    field("voltage_v", self.voltage_v);
+    field("current_a", self.current_a);
+    field("charge", self.charge);
+    field("left_s", self.left_s);
+    field("empty", self.empty);
+  }
+};
+
 // The supply that a diver breathes from, if the scene names regulators. Litres at 1 bar.
 struct SupplyReading {
   std::uint64_t donor = 0;   // number of the diver whose gas it is, from 1 on; 0: its own

@@ -36,13 +36,14 @@ struct SampleHeader {
 };
 
 // The order is that of PayloadKind.
-using Payload = std::variant<BodyJoints, HandJoints, HandPoses, HeadPose, Gaze, JacketButtons,
-                             Breath, Heart, GasSupply, VehicleWrench, VehicleSetpoint,
-                             VehicleVelocity, VehicleThrusters, ThrusterFault, ObjectPose, Event,
-                             rov::ImuReading, rov::DvlReading, rov::PressureReading, CompassReading,
-                             rov::AltimeterReading, rov::UsblReading, CollisionReading, DiverMotion,
-                             ComputerReading, ModemReading, ModemSend, ConditionReading,
-                             SupplyReading, RegulatorUse, GripReading, GripUse, TetherReading>;
+using Payload =
+    std::variant<BodyJoints, HandJoints, HandPoses, HeadPose, Gaze, JacketButtons, Breath, Heart,
+                 GasSupply, VehicleWrench, VehicleSetpoint, VehicleVelocity, VehicleThrusters,
+                 ThrusterFault, ObjectPose, Event, rov::ImuReading, rov::DvlReading,
+                 rov::PressureReading, CompassReading, rov::AltimeterReading, rov::UsblReading,
+                 CollisionReading, DiverMotion, ComputerReading, ModemReading, ModemSend,
+                 ConditionReading, SupplyReading, RegulatorUse, GripReading, GripUse, TetherReading,
+                 BatteryReading>;
 
 enum class PayloadKind : std::uint32_t {
   kBodyJoints,
@@ -78,9 +79,10 @@ enum class PayloadKind : std::uint32_t {
   kGripper,
   kGrip,
   kTether,
+  kBattery,
 };
 inline constexpr std::size_t kPayloadKinds = std::variant_size_v<Payload>;
-static_assert(kPayloadKinds == static_cast<std::size_t>(PayloadKind::kTether) + 1);
+static_assert(kPayloadKinds == static_cast<std::size_t>(PayloadKind::kBattery) + 1);
 
 // The last part of a stream's name: "joints", "imu".
 std::string_view name_of(PayloadKind kind);

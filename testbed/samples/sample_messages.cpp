@@ -48,6 +48,10 @@ std::string_view words_of(PayloadKind kind) {
       return "held: an object's number from 1 on, 0 nothing; place, load, nearest thing";
     case PayloadKind::kTether:
       return "a tether; pull: on the vehicle; touching: segments that press on something solid";
+    case PayloadKind::kBattery:
+      return "a battery; voltage and current at its terminals, charge of 1, time left at this "
+             "power; "
+             "empty 1: no thruster has power";
     case PayloadKind::kPressure:
       return "absolute pressure, and the depth that the sensor makes of it";
     case PayloadKind::kCompass:

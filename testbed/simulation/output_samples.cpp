@@ -25,6 +25,7 @@ bool leaves(const Stream& stream) {
     case PayloadKind::kSupply:
     case PayloadKind::kGripper:
     case PayloadKind::kTether:
+    case PayloadKind::kBattery:
       return true;
     default:
       return false;
@@ -90,6 +91,8 @@ OutputSamples::Made OutputSamples::made(const Stream& stream,
   if (stream.kind == PayloadKind::kComputer || stream.kind == PayloadKind::kCondition ||
       stream.kind == PayloadKind::kSupply)
     return every(std::max(diver::kComputerSample_s, world_.step_s()), snapshot.step);
+  if (stream.kind == PayloadKind::kBattery)
+    return every(std::max(1.0 / kBattery_hz, world_.step_s()), snapshot.step);
   if (stream.kind == PayloadKind::kCollision) {
     const PhysicsState& state = snapshot.state;
     const ContactState& contact = stream.sort == OwnerSort::kVehicle
@@ -144,6 +147,12 @@ Payload OutputSamples::payload(const Stream& stream, const PhysicsState& state) 
                         world_.humans(), state);
   if (stream.kind == PayloadKind::kTether)
     return tether_reading(state.tethers()[*world_.vehicles()[stream.owner].tether]);
+  if (stream.kind == PayloadKind::kBattery) {
+    const rov::Battery& battery = *world_.vehicles()[stream.owner].file.parameters.battery;
+    const rov::BatteryState& now = *world_.battery(state, stream.owner);
+    return BatteryReading{now.voltage_v, now.current_a, now.charge,
+                          rov::battery_left_s(battery, now), now.empty};
+  }
   if (stream.sort == OwnerSort::kDiver) {
     const PhysicsHuman& human = world_.humans()[stream.owner];
     const HumanPhysics& now = state.humans()[stream.owner];

@@ -17,6 +17,7 @@ namespace neritic::testbed {
 // has its own (diver::kComputerSample_s), vehicle sensors that of their files. A collision leaves
 // with each step in which the body touches something.
 inline constexpr double kDiverMotion_hz = 60.0;
+inline constexpr double kBattery_hz = 1.0;
 
 class OutputSamples {
  public:

@@ -241,19 +241,19 @@ class PhysicsState
     : public sim::Block<VehicleState, HumanPhysics, rov::SensorReadings, rov::NavigationState,
                         ObjectState, sonar::ModemState, ModemTasks, diver::ConditionState,
                         RegulatorState, ThingState, GripState, LimbState, TetherState,
-                        rov::CableNode> {
+                        rov::CableNode, rov::BatteryState> {
  public:
   PhysicsState() = default;
   // sensing: vehicles that have sensors; navigating: those that fly on what they measure; objects:
   // those that devices move; conditions, regulators: divers whose scene names them; limbs: objects
-  // with limbs.
+  // with limbs; batteries: vehicles whose file names one.
   PhysicsState(std::size_t vehicles, std::size_t humans, std::size_t sensing,
                std::size_t navigating, std::size_t objects = 0, std::size_t modems = 0,
                std::size_t conditions = 0, std::size_t regulators = 0, std::size_t things = 0,
                std::size_t grips = 0, std::size_t limbs = 0, std::size_t tethers = 0,
-               std::size_t tether_nodes = 0)
+               std::size_t tether_nodes = 0, std::size_t batteries = 0)
       : Block({vehicles, humans, sensing, navigating, objects, modems, modems, conditions,
-               regulators, things, grips, limbs, tethers, tether_nodes}) {}
+               regulators, things, grips, limbs, tethers, tether_nodes, batteries}) {}
 
   std::span<VehicleState> vehicles() { return part<VehicleState>(); }
   std::span<const VehicleState> vehicles() const { return part<VehicleState>(); }
@@ -281,7 +281,9 @@ class PhysicsState
   std::span<const TetherState> tethers() const { return part<TetherState>(); }
   std::span<rov::CableNode> tether_nodes() { return part<rov::CableNode>(); }
   std::span<const rov::CableNode> tether_nodes() const { return part<rov::CableNode>(); }
-
+  // For the vehicles that have one: PhysicsWorld::battery() finds a vehicle's.
+  std::span<rov::BatteryState> batteries() { return part<rov::BatteryState>(); }
+  std::span<const rov::BatteryState> batteries() const { return part<rov::BatteryState>(); }
   // For the divers whose condition the scene names: PhysicsHuman::condition finds a diver's.
   std::span<diver::ConditionState> conditions() { return part<diver::ConditionState>(); }
   std::span<const diver::ConditionState> conditions() const {
@@ -323,11 +325,14 @@ class PhysicsState
     auto tether_nodes = self.tether_nodes();
     field("tethers", tethers);
     field("tether_nodes", tether_nodes);
+    auto batteries = self.batteries();
+    field("batteries", batteries);
   }
   // The hash covers groups once a live source was asked for, and navigation, objects, modems,
-  // conditions, regulators, things, limbs and tethers where there are any.
+  // conditions, regulators, things, limbs, tethers and batteries where there are any.
   std::span<const std::uint64_t> hashed_counts() const {
-    const std::size_t kinds = !tethers().empty()      ? kKinds
+    const std::size_t kinds = !batteries().empty()    ? kKinds
+                              : !tethers().empty()    ? 14
                               : !limbs().empty()      ? 12
                               : !things().empty()     ? 11
                               : !regulators().empty() ? 9
@@ -356,6 +361,8 @@ class PhysicsState
     if (!navigation.empty()) field("navigation", navigation);
     auto limbs = self.limbs();
     if (!limbs.empty()) field("limbs", limbs);
+    auto batteries = self.batteries();
+    if (!batteries.empty()) field("batteries", batteries);
     auto modems = self.modems();
     auto modem_tasks = self.modem_tasks();
     if (!modems.empty()) field("modems", modems), field("modem_tasks", modem_tasks);

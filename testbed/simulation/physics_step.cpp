@@ -107,8 +107,13 @@ constexpr std::size_t kRoomForContacts = 256;
 PhysicsState PhysicsWorld::start() const {
   PhysicsState state(vehicles_.size(), humans_.size(), sensing_, navigating_, objects_.size(),
                      modems_.all().size(), conditions_, regulators_, things_.things().size(),
-                     things_.grips().size(), limbs_, tethers_.all().size(), tethers_.node_count());
-  for (std::size_t i = 0; i < vehicles_.size(); ++i) state.vehicles()[i].body = vehicles_[i].start;
+                     things_.grips().size(), limbs_, tethers_.all().size(), tethers_.node_count(),
+                     batteries_);
+  for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+    state.vehicles()[i].body = vehicles_[i].start;
+    if (const auto at = vehicles_[i].battery)
+      state.batteries()[*at] = rov::start_battery(*vehicles_[i].file.parameters.battery);
+  }
   for (std::size_t i = 0; i < humans_.size(); ++i) {
     state.humans()[i] = humans_[i].start;
     start_condition(humans_[i], state, humans_[i].start);
@@ -419,6 +424,14 @@ void PhysicsWorld::end_part(const StepCall& call, std::size_t i, unsigned thread
 void PhysicsWorld::finish_vehicle(const StepCall& call, std::size_t i, unsigned thread) const {
   end_part(call, i, thread);
   add_contact(call.scratch.vehicles[i].contact, call.time.step_s, call.after.vehicles()[i]);
+  if (const auto at = vehicles_[i].battery) {
+    const PhysicsVehicle& vehicle = vehicles_[i];
+    const rov::State& body = call.after.vehicles()[i].body;
+    const auto forces_n = rov::thruster_forces(vehicle.vehicle, body, body.held);
+    call.after.batteries()[*at] = rov::step_battery(
+        *vehicle.file.parameters.battery, call.before.batteries()[*at],
+        std::span(forces_n).first(vehicle.vehicle.thruster_count), call.time.step_s);
+  }
 }
 
 void PhysicsWorld::finish_human(const StepCall& call, std::size_t k, unsigned thread) const {

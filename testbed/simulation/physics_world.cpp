@@ -120,6 +120,7 @@ void PhysicsWorld::choose_inputs(const scene::Scene& scene) {
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     std::vector<PayloadKind> named = grip_kinds(OwnerSort::kVehicle, i);
     if (vehicles_[i].tether) named.push_back(PayloadKind::kTether);
+    if (vehicles_[i].battery) named.push_back(PayloadKind::kBattery);
     streams_.add_vehicle(vehicles_[i].name, vehicles_[i].file.sensors,
                          modem(OwnerSort::kVehicle, i), named);
     start_inputs_.vehicles()[i] =
@@ -175,6 +176,7 @@ Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index) {
   NERITIC_TRY_STATUS(check_start(scene, out.name, kind->solid.shape,
                                  rov::world_pose(out.start.position_ned_m, out.start.attitude)));
   if (out.file.sensors.any()) out.readings = sensing_++;
+  if (out.file.parameters.battery) out.battery = batteries_++;
   NERITIC_TRY(auto navigation, choose_navigation(scene, object, out.file.sensors));
   if (navigation) out.navigation = VehicleNavigation{std::move(*navigation), navigating_++};
   out.water = {scene.physics->water_kg_m3, out.file.gravity_m_s2,
@@ -248,6 +250,12 @@ const rov::SensorReadings* PhysicsWorld::readings(const PhysicsState& state,
                                                   std::size_t vehicle) const {
   const auto& at = vehicles_[vehicle].readings;
   return at ? &state.readings()[*at] : nullptr;
+}
+
+const rov::BatteryState* PhysicsWorld::battery(const PhysicsState& state,
+                                               std::size_t vehicle) const {
+  const auto& at = vehicles_[vehicle].battery;
+  return at ? &state.batteries()[*at] : nullptr;
 }
 
 StateFormat PhysicsWorld::state_format() const {

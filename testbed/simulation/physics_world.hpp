@@ -45,6 +45,7 @@ struct PhysicsVehicle {
   std::optional<scene::Wash> wash;
   rov::State start;
   std::optional<std::size_t> readings;  // of PhysicsState::readings(); none: without sensors
+  std::optional<std::size_t> battery;   // of PhysicsState::batteries(); none: thrust costs nothing
   std::optional<VehicleNavigation> navigation;  // none: flies on its true state
   rov::SensorWater water;                       // around its sensors
 };
@@ -132,6 +133,8 @@ class PhysicsWorld {
   Vec3 current_ned_m_s(const Vec3& position_ned_m, double time_s) const;
   // The newest readings of a vehicle's sensors; null where it has none.
   const rov::SensorReadings* readings(const PhysicsState& state, std::size_t vehicle) const;
+  // The battery of a vehicle; null where its file names none.
+  const rov::BatteryState* battery(const PhysicsState& state, std::size_t vehicle) const;
   // The motion of a vehicle as its own sensors estimate it; null, or absent: the vehicle flies on
   // its true state.
   const rov::NavigationState* navigation(const PhysicsState& state, std::size_t vehicle) const;
@@ -199,6 +202,7 @@ class PhysicsWorld {
   std::size_t navigating_ = 0;                   // those that fly on what they measure
   std::size_t conditions_ = 0, regulators_ = 0;  // divers whose scene names them
   std::size_t limbs_ = 0;                        // objects with limbs
+  std::size_t batteries_ = 0;                    // vehicles whose file names one
   StreamTable streams_;
   SourceNames sources_;
   PhysicsInputs start_inputs_;

@@ -61,7 +61,7 @@ bool PhysicsWorld::steer(std::size_t index, const StepCall& call, double time_s)
   if (piloted && inputs.wrench_by_thrusters != 0) {
     rov::Inputs commands;
     commands.thruster_n = inputs.thrusters.force_n;
-    rov::drive(vehicle.file, commands);
+    rov::drive(vehicle.file, commands, battery(call.after, index));
     if (!sim::all_finite(commands)) return false;
     drift_with(known, state.mission);
     state.command_n = commands.thruster_n;
@@ -91,7 +91,7 @@ bool PhysicsWorld::steer(std::size_t index, const StepCall& call, double time_s)
   rov::Inputs commands = failed == vehicle.failed_thrusters
                              ? commands_by(vehicle.kind.allocator)
                              : commands_by(rov::Allocator(vehicle.vehicle, failed));
-  rov::drive(vehicle.file, commands);
+  rov::drive(vehicle.file, commands, battery(call.after, index));
   if (!sim::all_finite(commands)) return false;
   state.command_n = commands.thruster_n;
   state.integral = control.integral;

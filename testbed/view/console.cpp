@@ -186,9 +186,7 @@ void Console::add_on_demand(graph::FrameGraph&, const ConsoleFrame& frame, Panel
   const auto& vehicles = options_.physics->world().vehicles();
   for (std::size_t i = 0; i < vehicles.size() && frame.pilot.flying(); ++i)
     if (static_cast<int>(vehicles[i].object) == frame.pilot.object())
-      facts.gauges = gauges_of(
-          vehicles[i], options_.physics->shown().vehicles()[i],
-          vehicles[i].tether ? &options_.physics->shown().tethers()[*vehicles[i].tether] : nullptr);
+      facts.gauges = gauges_of(options_.physics->world(), options_.physics->shown(), i);
 }
 
 // A ring around what was clicked, and what it is.

@@ -9,6 +9,7 @@
 namespace neritic::testbed {
 namespace {
 
+constexpr double kLowCharge = 0.2;
 constexpr float kRow_px = 20.0f, kFrame_px = 84.0f;
 
 // From the middle to the right ahead, to the left astern.
@@ -22,11 +23,26 @@ void thrust_bar(ImDrawList& list, ImVec2 from, ImVec2 size, double share, bool f
   list.AddLine(ImVec2(middle, from.y), ImVec2(middle, to.y), kInk);
 }
 
+// From the left; in the colour of alarms below a fifth.
+void charge_bar(ImDrawList& list, ImVec2 from, ImVec2 size, double charge) {
+  list.AddRectFilled(from, ImVec2(from.x + size.x, from.y + size.y), kPaper);
+  list.AddRectFilled(from, ImVec2(from.x + size.x * static_cast<float>(charge), from.y + size.y),
+                     charge < kLowCharge ? kAlarm : kMark);
+}
+
+std::string battery_words(const VehicleGauges::Battery& battery) {
+  if (battery.charge <= 0.0) return fmt::format("battery empty, {:.1f} V", battery.voltage_v);
+  const double left_min = battery.left_s / 60.0;
+  return fmt::format(
+      "battery {:.0f} %, {:.1f} V, {}", 100.0 * battery.charge, battery.voltage_v,
+      left_min < 600.0 ? fmt::format("{:.0f} min", std::floor(left_min)) : std::string("hours"));
+}
+
 }  // namespace
 
-VehicleGauges gauges_of(const PhysicsVehicle& vehicle, const VehicleState& state,
-                        const TetherState* line) {
-  const rov::State& body = state.body;
+VehicleGauges gauges_of(const PhysicsWorld& world, const PhysicsState& state, std::size_t index) {
+  const PhysicsVehicle& vehicle = world.vehicles()[index];
+  const rov::State& body = state.vehicles()[index].body;
   VehicleGauges out{.name = vehicle.name,
                     .depth_m = body.position_ned_m.z,
                     .heading_deg = degrees(rov::heading_of(body.attitude)),
@@ -49,16 +65,21 @@ VehicleGauges gauges_of(const PhysicsVehicle& vehicle, const VehicleState& state
         glm::length(rov::tether_force_n(*tether, anchor, at, velocity, body.held.current_ned_m_s));
     out.tether_used = glm::distance(at, anchor) / tether->length_m;
   }
-  if (line) {
+  if (vehicle.tether) {
+    const TetherState* line = &state.tethers()[*vehicle.tether];
     out.tether_n = line->end_n;
     out.tether_used = glm::distance(line->top_ned_m, line->end_ned_m) / line->length_m;
     out.tether_touching = line->touching;
   }
+  if (const rov::BatteryState* now = world.battery(state, index))
+    out.battery = {now->voltage_v, now->charge,
+                   rov::battery_left_s(*vehicle.file.parameters.battery, *now)};
   return out;
 }
 
 PanelWish gauges_wish(const VehicleGauges& gauges) {
-  const auto rows = static_cast<float>(gauges.thrust.size()) + (gauges.tether_used > 0.0 ? 1 : 0);
+  const auto rows = static_cast<float>(gauges.thrust.size()) + (gauges.tether_used > 0.0 ? 1 : 0) +
+                    (gauges.battery ? 2 : 0);
   return {.wanted = kFrame_px + rows * kRow_px, .least = kFrame_px + 2.0f * kRow_px};
 }
 
@@ -80,6 +101,12 @@ void draw_gauges(const VehicleGauges& gauges, const PanelRect& rect, float scale
     text_line(fmt::format("tether {:.0f} N, {:.0f} % of its length out{}", gauges.tether_n,
                           100.0 * gauges.tether_used,
                           gauges.tether_touching > 0 ? ", it touches" : ""));
+  if (gauges.battery) {
+    text_line(battery_words(*gauges.battery));
+    charge_bar(list, ImGui::GetCursorScreenPos(),
+               ImVec2(ImGui::GetContentRegionAvail().x, 0.5f * line), gauges.battery->charge);
+    ImGui::Dummy(ImVec2(0.0f, 0.5f * line));
+  }
   ImGui::End();
 }
 

@@ -1,7 +1,8 @@
 // Gauges of the vehicle that is flown by hand: depth, speed, the share of each thruster's limit,
-// the tether's pull. Dear ImGui calls. Rendering thread.
+// the tether's pull, the battery. Dear ImGui calls. Rendering thread.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,13 @@ struct VehicleGauges {
   std::vector<bool> failed;
   std::uint64_t tether_touching = 0;         // segments on something solid
   double tether_n = 0.0, tether_used = 0.0;  // pull; distance over its length. used 0: no tether
+  struct Battery {
+    double voltage_v = 0.0, charge = 0.0, left_s = 0.0;  // charge of 1; time at the power of now
+  };
+  std::optional<Battery> battery;
 };
-// tether: of one to which the scene gives one.
-VehicleGauges gauges_of(const PhysicsVehicle& vehicle, const VehicleState& state,
-                        const TetherState* tether = nullptr);
+// Of the vehicle with that number.
+VehicleGauges gauges_of(const PhysicsWorld& world, const PhysicsState& state, std::size_t vehicle);
 
 PanelWish gauges_wish(const VehicleGauges& gauges);
 void draw_gauges(const VehicleGauges& gauges, const PanelRect& rect, float scale);

@@ -348,6 +348,14 @@ void describe(Io& io, auto& p, const TetherReading*) {
   io.number("touching", p.touching);
 }
 template <class Io>
+void describe(Io& io, auto& p, const BatteryReading*) {
+  io.number("voltage", p.voltage_v);
+  io.number("current", p.current_a);
+  io.number("charge", p.charge);
+  io.number("left_s", p.left_s);
+  io.number("empty", p.empty);
+}
+template <class Io>
 void describe(Io& io, auto& p, const ConditionReading*) {
   io.number("alveolar_mmhg", p.alveolar_mmhg);
   io.number("saturation", p.saturation);

@@ -69,7 +69,7 @@ TEST(VehicleGauges, SayTheSharesOfTheThrustersLimits) {
       dive_of("[physics]\n" + rov_text("position_m = [0, -10, 0]\nmission = { waypoints "
                                        "= [ { position_m = [0, -10, -20] } ] }\n"));
   dive.run(3.0);
-  const VehicleGauges gauges = gauges_of(dive.world->vehicles()[0], dive.state().vehicles()[0]);
+  const VehicleGauges gauges = gauges_of(*dive.world, dive.state(), 0);
   ASSERT_EQ(gauges.thrust.size(), dive.world->vehicles()[0].vehicle.thruster_count);
   double most = 0.0;
   for (const double share : gauges.thrust) {
@@ -79,6 +79,7 @@ TEST(VehicleGauges, SayTheSharesOfTheThrustersLimits) {
   EXPECT_GT(most, 0.02);
   EXPECT_NEAR(gauges.depth_m, 10.0, 0.3);
   EXPECT_EQ(gauges.tether_used, 0.0);
+  EXPECT_FALSE(gauges.battery);
 }
 
 TEST(Picked, WordsAreAnObjectsNameAndClass) {
