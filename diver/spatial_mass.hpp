@@ -11,11 +11,6 @@ struct SpatialMass {
   Mat3 a{0.0}, b{0.0}, c{0.0};
 };
 
-// S(p) x = p cross x.
-inline Mat3 cross_matrix(const Vec3& p) {
-  return Mat3(0.0, p.z, -p.y, -p.z, 0.0, p.x, p.y, -p.x, 0.0);  // columns
-}
-
 inline SpatialMass& operator+=(SpatialMass& m, const SpatialMass& other) {
   m.a += other.a;
   m.b += other.b;

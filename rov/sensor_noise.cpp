@@ -15,11 +15,6 @@ RandomKey key_of(const NoiseSource& source, std::uint64_t component, Draw draw) 
 
 }  // namespace
 
-double random_normal(const RandomKey& key, std::uint64_t index) {
-  const double u = 1.0 - random_uniform(key, 2 * index);  // in (0, 1]
-  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * kPi * random_uniform(key, 2 * index + 1));
-}
-
 double random_walk(const RandomKey& key, std::uint64_t steps) {
   if (steps == 0) return 0.0;
   // Draw n is the walk's own at step n: an increment up to it, or the bridge's deviation there.

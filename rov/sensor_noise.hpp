@@ -24,9 +24,6 @@ inline double white_from_density(double density_per_root_hz, double rate_hz) {
   return density_per_root_hz * std::sqrt(rate_hz);
 }
 
-// A normal number (Box, Muller 1958) of this key and index.
-double random_normal(const RandomKey& key, std::uint64_t index);
-
 // The value after `steps` steps of a random walk with normal steps of variance 1, in about 2 log2
 // (steps) draws: first from power of two to power of two, then by Brownian bridges between (Lévy
 // 1948). walk(k + 1) - walk(k) are independent, whatever order they are asked in.

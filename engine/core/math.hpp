@@ -30,6 +30,11 @@ constexpr double degrees(double radians) {
   return radians * (180.0 / kPi);
 }
 
+// S(p) x = p cross x.
+inline Mat3 cross_matrix(const Vec3& p) {
+  return Mat3(0.0, p.z, -p.y, -p.z, 0.0, p.x, p.y, -p.x, 0.0);  // columns
+}
+
 // The rotation of a quaternion of any length; none where there is no length to divide by.
 inline Quat unit_or_identity(const Quat& q) {
   const double length = glm::length(q);

@@ -3,7 +3,9 @@
 // chained over the four words. Any thread.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 
 namespace neritic {
 
@@ -23,6 +25,14 @@ inline std::uint64_t random_bits(const RandomKey& key, std::uint64_t index) {
 // Uniform in [0, 1), 53 bits.
 inline double random_uniform(const RandomKey& key, std::uint64_t index) {
   return static_cast<double>(random_bits(key, index) >> 11) * 0x1.0p-53;
+}
+// A normal number of two uniform ones in [0, 1) (Box and Muller 1958).
+inline double normal_of(double u, double v) {
+  return std::sqrt(-2.0 * std::log(1.0 - u)) * std::cos(2.0 * std::numbers::pi * v);
+}
+// A normal number of the uniform ones of indices 2 index and 2 index + 1.
+inline double random_normal(const RandomKey& key, std::uint64_t index) {
+  return normal_of(random_uniform(key, 2 * index), random_uniform(key, 2 * index + 1));
 }
 
 }  // namespace neritic

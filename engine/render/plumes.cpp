@@ -23,14 +23,9 @@ constexpr double kPlumeRise_m_s = 0.12;
 // Silt: a puff each so many seconds; its first radius; how it spreads (m^2/s).
 constexpr double kPuffEvery_s = 0.4, kPuff_m = 0.10, kPuffSpread_m2_s = 2e-3;
 
-double normal_number(const RandomKey& key, std::uint64_t index) {
-  const double u = random_uniform(key, index), v = random_uniform(key, index + 1);
-  return std::clamp(std::sqrt(-2.0 * std::log(1.0 - u)) * std::cos(2.0 * kPi * v), -2.5, 2.5);
-}
-
-double eased(double low, double high, double x) {
-  const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
+double bounded_normal(const RandomKey& key, std::uint64_t index) {
+  return std::clamp(normal_of(random_uniform(key, index), random_uniform(key, index + 1)), -2.5,
+                    2.5);
 }
 
 // A turbulent plume widens by about a tenth of its height: its radius.
@@ -58,7 +53,8 @@ WorldParticle risen(const scene::BubbleSource& source, const Vec3& from_m, doubl
   };
   // Boyle: the volume grows as the pressure falls.
   bubble.radius_m = radius_m * std::cbrt(pressure(from_m.y) / pressure(bubble.position_m.y));
-  bubble.opacity = eased(source.height_m, 0.75 * source.height_m, rise_m) * eased(0.0, 0.1, age_s);
+  bubble.opacity = glm::smoothstep(source.height_m, 0.75 * source.height_m, rise_m) *
+                   glm::smoothstep(0.0, 0.1, age_s);
   bubble.kind = shared::kParticleBubble;
   bubble.seed = static_cast<std::uint32_t>(random_bits(key, index + 3));
   return bubble;
@@ -113,7 +109,7 @@ void add_bubbles(const scene::MotionSource& motion, const scene::BubbleSource& s
           first_s + period_s * static_cast<double>(breath) + out_s * random_uniform(key, index);
       const double age_s = time_s - born_s;
       if (age_s <= 0.0) continue;
-      const double own_m = radius_m * std::exp(kBubbleSpread * normal_number(key, index + 1));
+      const double own_m = radius_m * std::exp(kBubbleSpread * bounded_normal(key, index + 1));
       const double rise_m = (bubble_speed_m_s(own_m) + kPlumeRise_m_s) * age_s;
       if (rise_m > source.height_m) continue;
       const Vec3 from_m =
@@ -142,8 +138,8 @@ void add_silt(const scene::MotionSource& motion, const scene::SiltSource& source
     const double born_s = kPuffEvery_s * static_cast<double>(puff);
     const double age_s = time_s - born_s;
     // Older puffs are so wide that every other one is enough, then every fourth: the rest fade out.
-    const double left = puff % 2 != 0   ? eased(8.0, 4.0, age_s)
-                        : puff % 4 != 0 ? eased(24.0, 16.0, age_s)
+    const double left = puff % 2 != 0   ? glm::smoothstep(8.0, 4.0, age_s)
+                        : puff % 4 != 0 ? glm::smoothstep(24.0, 16.0, age_s)
                                         : 1.0;
     if (left <= 0.0) continue;
     const Vec3 at = place_at(born_s);
@@ -166,7 +162,7 @@ void add_silt(const scene::MotionSource& motion, const scene::SiltSource& source
     cloud.radius_m = radius_m;
     // Its particles spread over a wider cloud, and settle.
     cloud.opacity = 0.75 * std::sqrt(strength) * std::pow(kPuff_m / radius_m, 0.7) *
-                    std::exp(-age_s / source.hang_s) * eased(0.0, 0.5, age_s) * left;
+                    std::exp(-age_s / source.hang_s) * glm::smoothstep(0.0, 0.5, age_s) * left;
     cloud.kind = shared::kParticleSilt;
     cloud.seed = static_cast<std::uint32_t>(random_bits(key, 3));
     if (cloud.opacity > 0.01) out.push_back(cloud);

@@ -20,22 +20,12 @@ std::uint64_t word(std::int64_t cell) {
   return static_cast<std::uint64_t>(cell);
 }
 
-// A normal number of two uniform ones (Box and Muller 1958).
-double normal(double u, double v) {
-  return std::sqrt(-2.0 * std::log(1.0 - u)) * std::cos(2.0 * kPi * v);
-}
-
 // Whether a grain, lit as the water about it is, changes a pixel by less than half a level of 255:
 // its soft spot has twice the light of its middle spread over a disk of 0.75 pixels at least
 // (shaders/particles.vert).
 bool fades_away(double radius_m, double opacity, double range2_m2, double pixels) {
   const double own2 = radius_m * radius_m * pixels * pixels / std::max(range2_m2, 1e-6);
   return 2.0 * own2 / (own2 + 0.56) * opacity < 0.003;
-}
-
-double smooth(double low, double high, double x) {
-  const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
 }
 
 double cell_size_m(double density_m3) {
@@ -68,8 +58,8 @@ const std::vector<SnowField::Grain>& SnowField::grains_of(const Place& place) {
                               Vec3(random_uniform(key, 8 * i + 1), random_uniform(key, 8 * i + 2),
                                    random_uniform(key, 8 * i + 3)));
     grain.radius_m = 0.5 * diameter_m_ *
-                     std::exp(spread_ * std::clamp(normal(random_uniform(key, 8 * i + 4),
-                                                          random_uniform(key, 8 * i + 5)),
+                     std::exp(spread_ * std::clamp(normal_of(random_uniform(key, 8 * i + 4),
+                                                             random_uniform(key, 8 * i + 5)),
                                                    -2.5, 2.0));
     grain.opacity = 0.10 + 0.50 * random_uniform(key, 8 * i + 6);
     cell.grains.push_back(grain);
@@ -125,8 +115,9 @@ void SnowField::visit(const scene::Snow& snow, const Vec3& center_m, double time
           if (distance2_m2 >= range2_m2 || center_m.y + at.y >= 0.0) continue;
           const double range_m = std::sqrt(distance2_m2);
           visit_grain(grain, at,
-                      grain.opacity * (1.0 - smooth(0.7 * snow.range_m, snow.range_m, range_m)) *
-                          smooth(kNearest_m, kNear_m, range_m));
+                      grain.opacity *
+                          (1.0 - glm::smoothstep(0.7 * snow.range_m, snow.range_m, range_m)) *
+                          glm::smoothstep(kNearest_m, kNear_m, range_m));
         }
       }
   // Cells out of sight are let go of once they are more than those in sight; looking at all of them

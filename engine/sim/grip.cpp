@@ -3,11 +3,6 @@
 namespace neritic::sim {
 namespace {
 
-Mat3 cross_matrix(const Vec3& r) {
-  // Columns: [r]x e_i.
-  return {Vec3(0.0, r.z, -r.y), Vec3(-r.z, 0.0, r.x), Vec3(r.y, -r.x, 0.0)};
-}
-
 // A block of the inverse mass, row by row as it is stored.
 Mat3 block(const InverseMass& m, std::size_t row, std::size_t column) {
   Mat3 out(0.0);

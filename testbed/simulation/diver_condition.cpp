@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "diver/oxygen_exposure.hpp"
 #include "engine/core/random.hpp"
@@ -122,10 +121,7 @@ Result<PhysicsRegulator> physics_regulator(const scene::Regulator& said, const d
 }
 
 double drawn_tolerance(std::uint64_t seed, std::size_t human) {
-  // Box and Muller 1958.
-  const RandomKey key{seed, kToleranceStream, human};
-  const double u = 1.0 - random_uniform(key, 0), v = random_uniform(key, 1);
-  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * std::numbers::pi * v);
+  return random_normal({seed, kToleranceStream, human}, 0);
 }
 
 void start_condition(const PhysicsHuman& human, PhysicsState& state, const HumanPhysics& start) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "engine/core/random.hpp"
 #include "engine/core/text.hpp"
@@ -16,13 +15,6 @@ constexpr std::uint64_t kRangingStream = 0x72616e67696e67ull;  // of random numb
 constexpr std::uint64_t kRangingBytes = 1, kAnswerBytes = 2;
 // The most of a modem in one step; an inbox drains no more.
 constexpr std::uint64_t kMostAsked = 2 * SampleInbox::kCapacity;
-
-// Standard normal (Box and Muller 1958), of a counter.
-double modem_normal(std::uint64_t seed, std::size_t modem, std::uint64_t fix, std::uint64_t index) {
-  const RandomKey key{seed, kRangingStream + modem, fix};
-  const double u = 1.0 - random_uniform(key, 2 * index), v = random_uniform(key, 2 * index + 1);
-  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * std::numbers::pi * v);
-}
 
 sonar::ModemSettings settings_of(const scene::Modem& modem) {
   return {.source_level_db = modem.source_level_db,
@@ -219,7 +211,7 @@ void Modems::fix(const Call& call, std::size_t index, const sonar::ModemReport& 
   const Vec3 line = position_ned_m(modem.target, call.after) - here;
   const double distance = glm::length(line), level = std::hypot(line.x, line.y);
   const auto error = [&](std::uint64_t i) {
-    return modem_normal(call.channel.seed, index, tasks.fix.count, i);
+    return random_normal({call.channel.seed, kRangingStream + index, tasks.fix.count}, i);
   };
   rov::UsblReading fix;
   fix.heard = 1;

@@ -14,12 +14,6 @@ namespace {
 
 constexpr double kMadeSound_hz = 4000.0;
 
-// Box and Muller 1958.
-double gaussian(const RandomKey& key, std::uint64_t i) {
-  const double u = 1.0 - random_uniform(key, 2 * i), v = random_uniform(key, 2 * i + 1);
-  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * kPi * v);
-}
-
 // Rest at 65, a climb to 140 in half a minute, a stay, and a slow way back.
 double effort_rate_bpm(double t_s) {
   const double up = std::clamp((t_s - 60.0) / 30.0, 0.0, 1.0);
@@ -61,14 +55,14 @@ diver::Recording breath_of(const BreathColour& colour, double bpm, double second
     const double t = static_cast<double>(i) / kMadeSound_hz;
     if (t >= start_s + length_s) {
       start_s += length_s;
-      length_s = 60.0 / bpm * (1.0 + 0.05 * gaussian({key.seed, 7, key.frame}, ++breath));
+      length_s = 60.0 / bpm * (1.0 + 0.05 * random_normal({key.seed, 7, key.frame}, ++breath));
     }
     const double phase = (t - start_s) / length_s;
     const bool in = phase < 0.36, breathes_out = phase >= 0.46 && phase < 0.86;
     const double swell = in             ? std::sin(kPi * phase / 0.36)
                          : breathes_out ? std::sin(kPi * (phase - 0.46) / 0.40)
                                         : 0.0;
-    const double noise = gaussian(key, i), hum = 0.05 * gaussian({key.seed, 8, key.frame}, i);
+    const double noise = random_normal(key, i), hum = 0.05 * random_normal({key.seed, 8, key.frame}, i);
     const double l = low.step(noise), h = high.step(noise);
     out.samples.push_back(0.1 * (swell * ((in ? colour.in_low : colour.out_low) * l +
                                           (in ? colour.in_high : colour.out_high) * h) +
@@ -125,7 +119,7 @@ std::vector<double> make_ecg(const std::vector<double>& beats_s, double rate_hz,
   // As much noise a hertz at any rate: that of 360 Hz.
   const double sigma =
       std::sqrt(power * std::pow(10.0, -0.1 * snr_db) * std::max(1.0, rate_hz / 360.0));
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] += sigma * gaussian({seed, 2, 0}, i);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] += sigma * random_normal({seed, 2, 0}, i);
   return out;
 }
 
