@@ -451,7 +451,14 @@ class Looking(unittest.TestCase):
     @unittest.skipUnless(os.path.exists(detector.model_of("shipped")), "no shipped detector")
     def test_several_look_with_their_mean_and_both_ways_round(self):
         picture = np.random.Generator(np.random.Philox(key=2)).integers(0, 255, (64, 64, 3), dtype=np.uint8)
-        shipped = looking.Detector(detector.model_of("shipped"))
+        pair = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, pair)
+        for name, of, more in (("a", "shipped", {"with": ["b.onnx"], "power": 1.3}), ("b", "small", {})):
+            shutil.copy(detector.model_of(of), os.path.join(pair, name + ".onnx"))
+            with open(os.path.join(pair, name + ".json"), "w") as file:
+                json.dump({"kind": "classifier", "classes": crops.CLASSES, "side": 64, "mirror": True, **more}, file)
+        path = os.path.join(pair, "a.onnx")
+        shipped = looking.Detector(path)
         self.assertEqual(len(shipped.others), 1)
         views = []
         for one in (shipped, *shipped.others):
@@ -460,7 +467,7 @@ class Looking(unittest.TestCase):
                 views.append(one._net.forward().ravel().astype(float))
         mean = np.mean(views, axis=0) ** shipped.power
         np.testing.assert_allclose(shipped.shares(picture), mean / mean.sum(), atol=1e-6)
-        self.assertEqual(len(looking.files_of(detector.model_of("shipped"))), 4)
+        self.assertEqual(len(looking.files_of(path)), 4)
         with tempfile.TemporaryDirectory() as folder:
             for name in ("a.onnx", "b.onnx"):
                 shutil.copy(detector.model_of("small"), os.path.join(folder, name))
@@ -475,10 +482,32 @@ class Looking(unittest.TestCase):
                     looking.Detector(os.path.join(folder, "a.onnx"))
 
     @unittest.skipUnless(os.path.exists(detector.model_of("shipped")), "no shipped detector")
+    def test_looks_at_one_thing_count_together_and_their_number_is_checked(self):
+        rng = np.random.Generator(np.random.Philox(key=4))
+        looks = rng.integers(0, 255, (3, 64, 64, 3), dtype=np.uint8)
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "a.onnx")
+            shutil.copy(detector.model_of("small"), path)
+
+            def with_more(**more):
+                with open(os.path.join(folder, "a.json"), "w") as file:
+                    json.dump({"kind": "classifier", "classes": crops.CLASSES, "side": 64, **more}, file)
+                return looking.Detector(path)
+            alone = with_more()
+            mean = np.mean([alone.shares(look) for look in looks], axis=0) ** 1.5
+            np.testing.assert_allclose(with_more(looks=3, power=1.5).shares(looks), mean / mean.sum(), atol=1e-6)
+            for wrong, pixels in ((with_more(looks=3), looks[:2]), (with_more(looks=3), looks[0]), (alone, looks)):
+                with self.assertRaisesRegex(Failed, "accepted: [13] of one thing"):
+                    wrong.shares(pixels)
+            for bad in (0, 1.5, True, "3"):
+                with self.assertRaisesRegex(Refused, "a whole number in"):
+                    with_more(looks=bad)
+
+    @unittest.skipUnless(os.path.exists(detector.model_of("shipped")), "no shipped detector")
     def test_a_thread_answers_and_drops_what_is_old(self):
         shipped = looking.Detector(detector.model_of("shipped"))
         self.assertEqual(shipped.classes, crops.CLASSES)
-        self.assertLess(os.path.getsize(detector.model_of("shipped")), 250_000)
+        self.assertLess(os.path.getsize(detector.model_of("shipped")), 1_400_000)
         rng = np.random.Generator(np.random.Philox(key=1))
         picture = rng.integers(0, 255, (48, 80, 3), dtype=np.uint8)
         shares = shipped.shares(picture)

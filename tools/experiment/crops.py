@@ -2,8 +2,9 @@
 
 A scene is a place, a water, a light and a camera of some opening angle (places.py); in it the diver, the ROV, the shark,
 the fish or nothing stand before the camera in random poses, sizes and places of the crop, some behind a plant or a rock.
-Scenes to learn from have more things that are none of them. A thing that nobody could name is no crop: one that covers
-less than LEAST_SHARE of it (123 pixels of 64 x 64), or whose pixels differ from the light around them by less than
+Scenes to learn from have more things that are none of them. Half of these scenes are drawn from wider ranges (WIDE_RANGES),
+with up to three such things in a crop, before and behind. A thing that nobody could name is no crop: one that covers less
+than LEAST_SHARE of it (123 pixels of 64 x 64), or whose pixels differ from the light around them by less than
 LEAST_CONTRAST of 255 levels (rms), three times the noise of the noisiest camera.
 """
 import math
@@ -20,8 +21,11 @@ LABELS = {"diver": 4, "rov": 5, "shark": 7, "fish": 6}  # the scene's classes
 LENGTHS_M = {"diver": 1.8, "rov": 0.6, "shark": 3.0, "fish": 0.21}
 SIDE = 64
 LEAST_SHARE, LEAST_CONTRAST, MOST_NOISE = 0.03, 7.5, 2.5
-LESSON = {"margin": 1.5}  # how a scene is opened to learn from
-SCENES, STEPS = 60, 1600  # to learn from; of the training
+# To learn from: crops of a class, and how the scene is opened, of one half of the scenes and of the other.
+LESSONS = [(20, {"margin": 1.5}), (20, {"margin": 1.5, "wide": True})]
+SCENES, STEPS = 104, 4000  # to learn from; of the training
+RANGES = {"depth_m": (4.0, 25.0), "fov_deg": (14.0, 35.0), "fish_scale": (2.0, 4.0), "fills": (0.35, 1.1), "sight": (0.5, 1.0), "down": 0.2}
+WIDE_RANGES = {"depth_m": (3.0, 30.0), "fov_deg": (12.0, 48.0), "fish_scale": (1.5, 4.5), "fills": (0.3, 1.3), "sight": (0.3, 1.0), "down": 0.3}
 FAR = [900.0, 900.0, -40.0]
 ASSETS = os.path.normpath(os.path.join(SHIPPED, ".."))
 # Beside plant and rock, in scenes to learn from: three a scene, of these.
@@ -85,13 +89,14 @@ class Maker:
     """Crops of one seed's scene. tools: as the runner gives them; it belongs to one thread. margin: how much wider than a
     crop the camera looks, for training to cut crops from."""
 
-    def __init__(self, tools, split, seed, side=SIDE, margin=1.0):
+    def __init__(self, tools, split, seed, side=SIDE, margin=1.0, wide=False):
         first = {"train": 0, "choose": 1 << 41, "test": 1 << 40}[split]
         self.rng = rng = np.random.Generator(np.random.Philox(key=seed + first))
+        self.varied, self.ranges = wide, WIDE_RANGES if wide else RANGES
         self.water = str(rng.choice(SPLITS[split]["waters"]))
         self.place = str(rng.choice(SPLITS[split]["places"]))
-        self.depth, self.fov = rng.uniform(4.0, 25.0), math.radians(rng.uniform(14.0, 35.0))
-        self.over_floor, self.fish_scale = 6.0 + rng.uniform(0, 2), rng.uniform(2.0, 4.0)
+        self.depth, self.fov = rng.uniform(*self.ranges["depth_m"]), math.radians(rng.uniform(*self.ranges["fov_deg"]))
+        self.over_floor, self.fish_scale = 6.0 + rng.uniform(0, 2), rng.uniform(*self.ranges["fish_scale"])
         self.side, self.wide = side, round(side * margin)
         floor, lamp = -(self.depth + 3.0), ""
         if rng.random() < 0.35:
@@ -102,7 +107,7 @@ class Maker:
         text += PLACES[self.place].format(floor=floor, assets=ASSETS)
         self.hides = ["plant", "rock"]
         if split == "train":
-            self.hides += [str(name) for name in rng.choice(list(MORE), 3, replace=False)]
+            self.hides += [str(name) for name in rng.choice(list(MORE), 4 if wide else 3, replace=False)]
         swim = '\nclip = "swim"\nclip_rate = 37.3'  # so that a step is another phase of the stroke
         shown = {"diver": f'model = "{ASSETS}/models/diver.glb"' + swim, "shark": f'model = "{ASSETS}/models/shark.glb"' + swim,
                  "rov": f'model = "{ASSETS}/models/rov.glb"',
@@ -142,20 +147,24 @@ class Maker:
         """(pixels [wide, wide, 3], which of them are its own, range) without a camera's noise, or None."""
         rng, world = self.rng, self.world
         eye = np.array([rng.uniform(-8, 8), rng.uniform(-8, 8), -self.depth + rng.uniform(-1.5, 1.5)])
-        yaw, down = rng.uniform(-math.pi, math.pi), rng.normal(0.0, 0.2)
+        yaw, down = rng.uniform(-math.pi, math.pi), rng.normal(0.0, self.ranges["down"])
         ahead = np.array([math.cos(yaw) * math.cos(down), math.sin(yaw) * math.cos(down), -math.sin(down)])
         left = np.array([-math.sin(yaw), math.cos(yaw), 0.0])
         up = np.cross(ahead, left)
-        poses, far = {}, FARTHEST_M[self.water] * rng.uniform(0.5, 1.0)
+        poses, far = {}, FARTHEST_M[self.water] * rng.uniform(*self.ranges["sight"])
         if name != "nothing":
             length = self._length(name)
-            far = min(far, length / (2 * math.tan(rng.uniform(0.35, 1.1) * self.fov / 2)))
+            far = min(far, length / (2 * math.tan(rng.uniform(*self.ranges["fills"]) * self.fov / 2)))
             if 2 * math.atan(length / 2 / far) > (2.2 if name == "shark" else 1.6) * self.fov:
                 return None  # nearer than a crop can hold
             off = rng.normal(0.0, 0.10, 2).clip(-0.25, 0.25) * self.fov * far
             poses[name] = (eye + far * ahead + off[0] * left + off[1] * up, self._pose(name))
-        if rng.random() < (0.3 if name != "nothing" else 0.6):
+        for others in range(3 if self.varied else 1):
+            if rng.random() >= (0.3 if name != "nothing" else 0.6) * (1.0, 0.6, 0.4)[others]:
+                break
             near, hides = far * rng.uniform(0.4, 0.8), str(rng.choice(self.hides))
+            if others:  # anywhere, also behind
+                near = far * rng.uniform(0.4, 1.6)
             place = eye + near * (ahead + rng.uniform(-0.5, 0.5) * self.fov * left + rng.uniform(-0.4, 0.2) * self.fov * up)
             tilt = rng.uniform(-1.2, 1.2) if hides in MORE else 0.0
             poses[hides] = (place, quaternion(rng.uniform(-math.pi, math.pi), tilt, 0.0))
@@ -183,12 +192,12 @@ class Maker:
         return some_of(self.one, CLASSES, each)
 
 
-def some_of(one, names, each):
+def some_of(one, names, each, tries=4):
     """(first parts of what one(name) gives, classes [n]): so many of each class, fewer where they cannot be seen."""
     found, classes = [], []
     for index, name in enumerate(names):
         made = 0
-        for _ in range(4 * each):
+        for _ in range(tries * each):
             if made == each:
                 break
             given = one(name)

@@ -15,7 +15,7 @@ from scenario import SHIPPED, Failed, Setting
 MAKERS = {"camera": crops, "sonar": sonar_crops}
 SETTINGS = {
     "eye": Setting("camera", "pictures of a camera or of an imaging sonar", words=list(MAKERS)),
-    "model": Setting("shipped", "shipped, small (one network of it; both of a camera alone), or an .onnx file with its .json beside it"),
+    "model": Setting("shipped", "shipped, small (of a camera alone: a quarter of the work), or an .onnx file with its .json beside it"),
     "crops": Setting(12, "of each class and scene", 1, 1000, whole=True),
 }
 MEASURES = {
@@ -28,7 +28,7 @@ DETECTORS = os.path.join(SHIPPED, "..", "detectors")
 
 
 def model_of(name, eye="camera"):
-    """The file of "shipped", of "small" (one network of it alone), or the user's own."""
+    """The file of "shipped", of "small", or the user's own."""
     shipped = {"shipped": eye + ".onnx", "small": eye + "_2.onnx"}
     return os.path.join(DETECTORS, shipped[name]) if name in shipped else name
 
@@ -48,9 +48,14 @@ def run(settings, seed, tools):
     detector = looking.Detector(model_of(settings["model"], settings["eye"]))
     if detector.classes != maker.CLASSES:
         raise Failed(f"{settings['model']}: found the classes {', '.join(detector.classes)}; accepted: {', '.join(maker.CLASSES)}")
+    looks = getattr(maker, "LOOKS", 1)
+    if detector.looks not in (1, looks):
+        raise Failed(f"{settings['model']}: found {detector.looks} looks; accepted: 1 or {looks}")
     scene = maker.Maker(tools, "test", seed)
     pixels, classes = scene.some(settings["crops"])
     scene.close()
+    first = pixels[:, 0] if looks > 1 else pixels
+    pixels = first if detector.looks == 1 else pixels
     looker = looking.Looker(_Shares(detector))
     told, latency = [], []
     for i, one in enumerate(pixels):
@@ -66,7 +71,7 @@ def run(settings, seed, tools):
     shown += [int(i) for i in np.flatnonzero(~right)[:3]]
     series = {"truth": classes.tolist(), "told": best.tolist(), "sure": sure.astype(float).round(4).tolist(),
               "where": f"{scene.place}, {scene.water}",
-              "pictures": [[int(classes[i]), int(best[i]), _png(pixels[i])] for i in shown]}
+              "pictures": [[int(classes[i]), int(best[i]), _png(first[i])] for i in shown]}
     return {"accuracy": float(right.mean()), "crops": len(classes), "overconfidence": float(sure.mean() - right.mean()),
             "latency_ms": 1e3 * float(np.median(latency))}, series
 

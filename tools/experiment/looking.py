@@ -3,7 +3,8 @@
 Beside NAME.onnx lies NAME.json: {"kind": "classifier", "yolo5", "yolo8" or "ssd", "classes": [...], "side": 64,
 "normalise": "crop" (the default) or "none", "mirror": false}. With "mirror" a classifier also looks at the crop with left
 and right exchanged and answers the mean, for twice the time. With "with": ["OTHER.onnx"] the classifiers of those files, beside it,
-look too: the mean of all counts, to the power "power", which makes it as sure as it is right. A classifier gives a share to each class of a whole crop. YOLO's raw output and
+look too. With "looks": N it is meant for N pictures of the same thing: [N, row, column(, channel)]. The mean of all counts, to
+the power "power", which makes it as sure as it is right. A classifier gives a share to each class of a whole crop. YOLO's raw output and
 SSD's rows (image, class, confidence, box) give boxes; overlapping ones are thinned. Pictures are [row, column(, channel)]
 as the cameras and sonars give them, RGB.
 """
@@ -77,8 +78,10 @@ class Detector:
             raise Refused(f"{about}: found kind {self.kind!r}, side {self.side}, {len(self.classes)} classes; accepted: "
                           f"{', '.join(KINDS)}; 8 to 4096; one or more")
         self.normalise, self.mirror = self.about.get("normalise", "crop"), self.about.get("mirror", False)
-        if self.normalise not in ("crop", "none") or not isinstance(self.mirror, bool):
-            raise Refused(f"{about}: found normalise {self.normalise!r}, mirror {self.mirror!r}; accepted: crop, none; true, false")
+        self.looks = self.about.get("looks", 1)
+        if self.normalise not in ("crop", "none") or not isinstance(self.mirror, bool) or type(self.looks) is not int or not 1 <= self.looks <= 64:
+            raise Refused(f"{about}: found normalise {self.normalise!r}, mirror {self.mirror!r}, looks {self.looks!r}; "
+                          "accepted: crop, none; true, false; a whole number in [1, 64]")
         self.power, others = self.about.get("power", 1.0), _others(path, self.about)
         if isinstance(self.power, bool) or not isinstance(self.power, (int, float)) or not 0.1 <= self.power <= 10:
             raise Refused(f"{about}: found power {self.power!r}; accepted: a number in [0.1, 10]")
@@ -108,8 +111,12 @@ class Detector:
             raise Failed(f"detector: {_line(error)}") from None
 
     def shares(self, pixels):
-        """The answer of a classifier, and of those that look with it: the share of each class, their sum is 1."""
-        out = sum((other._own_shares(pixels) for other in self.others), self._own_shares(pixels)) ** self.power
+        """The answer of a classifier, and of those that look with it: the share of each class, their sum is 1. pixels: one
+        picture, or where looks is not 1 as many."""
+        looks = pixels if self.looks > 1 else pixels[None]
+        if len(looks) != self.looks or looks[0].ndim not in (2, 3):
+            raise Failed(f"detector: found a picture of {pixels.shape}; accepted: {self.looks} of one thing")
+        out = sum(one._own_shares(look) for one in (self, *self.others) for look in looks) ** self.power
         return out / out.sum()
 
     def _own_shares(self, pixels):

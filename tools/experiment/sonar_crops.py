@@ -1,9 +1,10 @@
-"""Crops of an imaging sonar's picture: 64 ranges by 64 bearings around one thing on or over a bottom, drawn by a seed.
+"""Crops of an imaging sonar's pictures: 64 ranges by 64 bearings around one thing on or over a bottom, drawn by a seed.
 
 A scene is a bottom, a device (frequency, beam, pulse, noise, speckle) and a range; the diver, the ROV, a moored mine, a
-tyre or nothing but stones are in it in random poses. Devices and bottoms of the split "test" never occur in "train". A crop
-whose thing is the loudest in fewer than LEAST_BINS of the 64 x 64 bins, or there not LEAST_LOUDER levels of 255 (3.5 dB) over the
-rest, is not made: nobody could name it. Crops to learn from may be fainter: LESSON_BINS of the sonar's own bins are enough.
+tyre or nothing but stones are in it in random poses. The sonar moves around the thing: a crop is LOOKS pictures, each from
+6 to 14 degrees farther on. Devices and bottoms of the split "test" never occur in "train". A crop whose thing is, in the first
+picture, the loudest in fewer than LEAST_BINS of the 64 x 64 bins, or there not LEAST_LOUDER levels of 255 (3.5 dB) over the rest,
+is not made: nobody could name it. Crops to learn from may be fainter: LESSON_BINS of the sonar's own bins are enough.
 """
 import math
 import os
@@ -15,8 +16,8 @@ from rotations import quaternion
 
 CLASSES = ["nothing", "diver", "rov", "mine", "tyre"]
 LABELS = {"diver": 4, "rov": 5, "mine": 12, "tyre": 11}
-SIDE, LEAST_BINS, LEAST_LOUDER, LESSON_BINS, WINDOW_M = 64, 16, 20.0, 24, 4.0
-SCENES, STEPS = 18, 700  # to learn from; of the training
+SIDE, LEAST_BINS, LEAST_LOUDER, LESSON_BINS, WINDOW_M, LOOKS = 64, 16, 20.0, 24, 2.8, 3
+SCENES, STEPS = 50, 3000  # to learn from; of the training
 SPLITS = {"train": {"bottoms": ["sand", "gravel", "mud"], "khz": [550, 750, 1200], "beam": [0.8, 1.0, 1.4]},
           "choose": {"bottoms": ["sand", "mud"], "khz": [650], "beam": [0.9, 1.3]},
           "test": {"bottoms": ["rock", "silt"], "khz": [900], "beam": [0.6, 1.2]}}
@@ -82,6 +83,11 @@ def heard(pixels, its):
     return its.sum() >= LEAST_BINS and pixels[its].mean() - pixels[~its].mean() >= LEAST_LOUDER
 
 
+def _eye(spot, far, yaw, down):
+    """Where a sonar is that hears the spot from so far, looking so."""
+    return spot + far * np.array([-math.cos(down) * math.cos(yaw), -math.cos(down) * math.sin(yaw), math.sin(down)])
+
+
 class Maker:
     """Sonar crops of one seed's scene, as crops.Maker."""
 
@@ -92,7 +98,7 @@ class Maker:
         self.water = f"{rng.choice(of['khz'])} kHz"
         self.place = str(rng.choice(of["bottoms"]))
         self.near = rng.uniform(1.5, 8.0)
-        self.azimuth = math.radians(np.clip(200 / (self.near + 2) * rng.uniform(0.8, 1.2), 20, 45))
+        self.azimuth = math.radians(np.clip(170 / (self.near + 1.4) * rng.uniform(0.8, 1.2), 14, 45))
         rough = rng.uniform(0.0, 0.06)
         n = 129
         heights = np.zeros((n, n))
@@ -124,16 +130,14 @@ class Maker:
         self.world.close()
 
     def one(self, name):
-        """(picture [64, 64], range in metres), or None where the thing cannot be heard."""
+        """(pictures [LOOKS, 64, 64], range in metres), or None where the thing cannot be heard."""
         rng, world = self.rng, self.world
         yaw, down = rng.uniform(-math.pi, math.pi), rng.uniform(0.06, 0.35)
         far = self.near + WINDOW_M * rng.uniform(0.25, 0.75)
         bearing = rng.normal(0.0, 0.12) * self.azimuth
-        level = np.array([math.cos(yaw + bearing), math.sin(yaw + bearing), 0.0])
         over = {"tyre": 0.1, "mine": rng.uniform(0.3, 1.2), "rov": rng.uniform(0.2, 1.5), "diver": rng.uniform(0.4, 1.5),
                 "nothing": 0.3}[name]
         spot = np.array([rng.uniform(-4, 4), rng.uniform(-4, 4), -12.0 + over])
-        eye = spot - far * math.cos(down) * level + np.array([0, 0, far * math.sin(down)])
         poses = {}
         if name != "nothing":
             turn = {"tyre": (rng.choice([0.0, rng.uniform(-1.6, 1.6)]), 0.2), "mine": (0.0, 0.2), "rov": (0.0, 0.1),
@@ -141,22 +145,27 @@ class Maker:
             if name == "tyre" and abs(turn[0]) > 0.3:
                 spot[2] += 0.2  # it leans
             poses[name] = (spot, quaternion(rng.uniform(-math.pi, math.pi), turn[0], rng.normal(0, turn[1])))
+        eye = _eye(spot, far, yaw + bearing, down)
         if rng.random() < (0.25 if name != "nothing" else 0.6):
             side = rng.uniform(-0.4, 0.4) * self.azimuth
             at = eye + (self.near + WINDOW_M * rng.uniform(0.1, 0.9)) * np.array([math.cos(yaw + side), math.sin(yaw + side), 0])
             poses["stone"] = (np.array([at[0], at[1], -12.0]), quaternion(rng.uniform(-math.pi, math.pi), 0.0, 0.0))
-        world["eye"].pose(eye, quaternion(yaw, down, rng.normal(0, 0.03)), velocity=[0, 0, 0])
         for i, thing in enumerate(self.things):
             at, q = poses.get(thing, ([FAR[0] + 10 * i, FAR[1], FAR[2]], [0, 0, 0, 1]))
             world[thing].pose(at, q, velocity=[0, 0, 0])
-        seen = world.tick(1)
-        echoes, labels = np.array(seen["eye_crop/echoes"].pixels), np.array(seen["eye_crop/echo_labels"].pixels)
-        pixels = picture(echoes)
-        if name == "nothing":
-            return pixels, far
+        on, looks = math.radians(rng.uniform(6, 14)) * rng.choice([-1, 1]), []
+        for look in range(LOOKS):
+            world["eye"].pose(_eye(spot, far, yaw + bearing + look * on, down),
+                              quaternion(yaw + look * on, down, rng.normal(0, 0.03)), velocity=[0, 0, 0])
+            seen = world.tick(1)
+            looks.append(picture(np.array(seen["eye_crop/echoes"].pixels)))
+            if look == 0 and name != "nothing" and not self._named(name, looks[0], np.array(seen["eye_crop/echo_labels"].pixels)):
+                return None
+        return np.stack(looks), far
+
+    def _named(self, name, pixels, labels):
         its = labels == LABELS[name]
-        named = heard(pixels, _mean_of_bins(its) >= 0.5) if self.strict else np.count_nonzero(its) >= LESSON_BINS
-        return (pixels, far) if named else None
+        return heard(pixels, _mean_of_bins(its) >= 0.5) if self.strict else np.count_nonzero(its) >= LESSON_BINS
 
     def some(self, each):
         return some_of(self.one, CLASSES, each)

@@ -26,20 +26,20 @@ from crops import some_of
 from runner import Tools
 from scenario import Failed, Refused
 
-EACH, EACH_CHOOSE = 12, 10  # crops of a class and a scene
-BATCH, THREADS = 40, 1
-MOST_RATE, MORE_RATE, COOL = 3e-3, 1e-3, 300  # from the beginning, and from weights of a file; steps in which it ends
+EACH, EACH_CHOOSE = 12, 10  # crops of a class and a scene, where the maker's LESSONS name no other
+BATCH, THREADS = 64, 1
+MOST_RATE, MORE_RATE, COOL = 3e-3, 1e-3, 800  # from the beginning, and from weights of a file; steps in which it ends
 KEPT = 0.99  # of the averaged weights at each step
 LEAST_SCENES = 10
 
 
-def _scene(name, program, split, seed, each):
-    """A worker process; name: of the maker's module."""
+def _scene(name, program, split, seed, each, opened):
+    """A worker process; name: of the maker's module, opened: further words to its Maker."""
     maker = importlib.import_module(name)
     with tempfile.TemporaryDirectory(prefix="neritic_crops_") as folder:
         tools = Tools(program, folder)
         try:
-            made = maker.Maker(tools, split, seed, **(getattr(maker, "LESSON", {}) if split == "train" else {}))
+            made = maker.Maker(tools, split, seed, **opened)
             lesson = getattr(made, "lesson", made.one) if split == "train" else made.one
             found = some_of(lesson, maker.CLASSES, each)
             made.close()
@@ -48,10 +48,17 @@ def _scene(name, program, split, seed, each):
     return found
 
 
-def gather(maker, program, split, scenes, seed, each, workers, told):
+def lessons_of(maker, split, scenes):
+    """(crops of a class, words to the Maker) of each scene: to learn from, as many scenes of each of the maker's LESSONS."""
+    kinds = getattr(maker, "LESSONS", [(EACH, {})]) if split == "train" else [(EACH_CHOOSE, {})]
+    return [kinds[i * len(kinds) // scenes] for i in range(scenes)]
+
+
+def gather(maker, program, split, scenes, seed, workers, told):
     """(pictures, classes) of all scenes, in order. They are not kept: minutes make them again."""
     with concurrent.futures.ProcessPoolExecutor(max(1, workers), initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)) as pool:
-        waiting = [pool.submit(_scene, maker.__name__, program, split, seed + i, each) for i in range(scenes)]
+        waiting = [pool.submit(_scene, maker.__name__, program, split, seed + i, *of)
+                   for i, of in enumerate(lessons_of(maker, split, scenes))]
         out = []
         try:
             for i, one in enumerate(waiting):
@@ -67,11 +74,11 @@ def gather(maker, program, split, scenes, seed, each, workers, told):
 
 
 def network(torch, channels, classes):
-    """A residual network of 65 000 weights: 64 x 64 to 4 x 4 maps, then the mean and the largest of each map."""
+    """A residual network of 320 000 weights (1.3 MB): 64 x 64 to 4 x 4 maps, then the mean and the largest of each map."""
     nn = torch.nn
 
-    def block(a, b, stride):
-        return nn.Sequential(nn.Conv2d(a, b, 3, stride, 1, bias=False), nn.BatchNorm2d(b), nn.ReLU())
+    def block(a, b, stride, side=3):
+        return nn.Sequential(nn.Conv2d(a, b, side, stride, side // 2, bias=False), nn.BatchNorm2d(b), nn.ReLU())
 
     class Residual(nn.Module):
         def __init__(self, n):
@@ -84,9 +91,10 @@ def network(torch, channels, classes):
     class Net(nn.Module):
         def __init__(self):
             super().__init__()
-            self.maps = nn.Sequential(block(channels, 16, 2), block(16, 24, 2), block(24, 40, 2), Residual(40), block(40, 64, 2))
+            self.maps = nn.Sequential(block(channels, 16, 2, 5), block(16, 32, 2), block(32, 64, 2), Residual(64), block(64, 96, 2),
+                                      Residual(96))
             self.mean, self.most, self.drop = nn.AvgPool2d(4), nn.MaxPool2d(4), nn.Dropout(0.2)
-            self.last = nn.Linear(128, classes)
+            self.last = nn.Linear(192, classes)
 
         def forward(self, x):
             x = self.maps(x)
@@ -132,21 +140,28 @@ def train(name, maker, classes, channels, program, scenes, seed, workers, out, q
         raise Refused(f"--runs: found {scenes}; accepted: {LEAST_SCENES} scenes or more, to learn from")
     steps, draw, start = settings_of(sets, maker.STEPS, seed)
     begun = _going_on(torch, start, classes) if start else None
-    x, y = gather(maker, program, "train", scenes, 1000 * seed, EACH, workers, not quiet)
-    xv, yv = gather(maker, program, "choose", max(3, scenes // 10), 1000 * seed, EACH_CHOOSE, workers, not quiet)
+    x, y = gather(maker, program, "train", scenes, 1000 * seed, workers, not quiet)
+    xv, yv = gather(maker, program, "choose", max(3, scenes // 10), 1000 * seed, workers, not quiet)
+    looks = getattr(maker, "LOOKS", 1)
     if not quiet:
         print(f"{len(y)} crops to learn from, {len(yv)} to choose by: {np.bincount(y, minlength=len(classes)).tolist()}", flush=True)
-    net, best = fit(torch, (x, y), (xv, yv), channels, classes, steps, draw, quiet, begun)
+    net, best, power = fit(torch, _apart(x, y, looks), _apart(xv, yv, looks), channels, classes, steps, draw, quiet, begun, looks)
     about = {"kind": "classifier", "classes": classes, "side": 64, "channels": channels, "normalise": "crop", "mirror": True,
+             **({"looks": looks, "power": round(power, 3)} if looks > 1 else {}),
              "made_by": " ".join([f"neritic experiment train_{name} --runs {scenes} --seed {seed}", *(f"--set {s}" for s in sets)]),
              "share_of_crops_to_choose_by": round(best, 4)}
     _export(torch, torch.nn.Sequential(net, torch.nn.Softmax(1)).eval(), name, about, out)
     return best
 
 
-def fit(torch, lessons, chosen_by, channels, classes, steps, seed, quiet, start=None):
-    """start: a network to go on from. Returns (network of calibrated logits, share of the crops to
-    choose by that it names rightly)."""
+def _apart(pictures, classes, looks):
+    """Each look at a thing as a picture of its own, those of one thing after each other."""
+    return (pictures.reshape(-1, *pictures.shape[2:]), np.repeat(classes, looks)) if looks > 1 else (pictures, classes)
+
+
+def fit(torch, lessons, chosen_by, channels, classes, steps, seed, quiet, start=None, looks=1):
+    """start: a network to go on from. Returns (network of calibrated logits, share of the crops to choose by that it names
+    rightly by so many looks, the power that makes their mean as sure as it is right)."""
     torch.manual_seed(seed)
     torch.set_num_threads(THREADS)
     torch.use_deterministic_algorithms(True)
@@ -159,7 +174,8 @@ def fit(torch, lessons, chosen_by, channels, classes, steps, seed, quiet, start=
     with torch.no_grad():  # into the last layer, so that the file's shares are calibrated
         net.last.weight /= temperature
         net.last.bias /= temperature
-    return net, float((_shares(logits / temperature).argmax(1) == seen[1]).float().mean())
+    shares, of = _shares(logits / temperature).reshape(-1, looks, len(classes)).mean(1), seen[1][::looks]
+    return net, float((shares.argmax(1) == of).float().mean()), 1 / _temperature(torch, shares.log()[None], of)
 
 
 def rate(step, steps, most):
