@@ -19,23 +19,17 @@ struct ShadeRows {
   std::uint32_t list = 0;
 };
 
-// How deep an eye lies below the lowest trough, m.
-float deep_below_waves_m(const shared::View& view, const shared::Lighting& lighting,
-                         const shared::Waves& waves) {
-  const float room_m = 6.0f * waves.height_rms_m + 0.05f;
-  return lighting.origin_depth_m - view.eye.y + waves.eye_height_m - room_m;
-}
-
 // Splits the picture where no view sees the wavy surface before the water has hidden it (sea_meets
 // in shaders/shared/sea_surface.glsl, with room for the waves' height).
 std::vector<ShadeRows> rows_of_sea(const ViewSet& views, const shared::Lighting& lighting,
                                    const shared::Waves& waves, std::uint32_t groups_high) {
   const float clearest = std::min(
       {lighting.beam_attenuation.x, lighting.beam_attenuation.y, lighting.beam_attenuation.z});
+  const float room_m = 6.0f * waves.height_rms_m + 0.05f;
   std::uint32_t first = groups_high, end = 0;
   const auto all = gpu_views(views);
   for (const shared::View& view : std::span(all).first(views.views.size())) {
-    const float deep_m = deep_below_waves_m(view, lighting, waves);
+    const float deep_m = lighting.origin_depth_m - view.eye.y + waves.eye_height_m - room_m;
     if (!(deep_m > 0.0f)) return {{0, groups_high, true, nullptr}};
     const float least = std::max(deep_m * clearest / shared::kSeaFaded, 2e-3f);
     for (std::uint32_t g = 0; g < groups_high; ++g) {
@@ -83,30 +77,15 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
   // Rows that see no sea are spared its waves: a CPU driver computes them for every pixel.
   std::vector<ShadeRows> rows{{0, groups(gbuffer.height), waves.has_value(), nullptr}};
   if (waves) rows = rows_of_sea(views, lighting, *waves, groups(gbuffer.height));
-  // Tiles of water alone are shaded without what solids need, and tiles that cannot show the wavy
-  // surface without its waves. Not with several layers: a CPU's driver must see which layer a
-  // workgroup reads.
-  const bool tiled = gbuffer.layers == 1;
+  // Tiles of water alone are shaded without what solids need. Not with waves: lists beside them
+  // smash lavapipe's stack (Mesa 22.3; seen in PictureExtremes.EachTermIsInTheGraphOnlyWhere...).
+  // Not with several layers: a CPU's driver must see which layer a workgroup reads.
+  const bool tiled = gbuffer.layers == 1 && !waves;
   graph::BufferHandle tiles;
   if (tiled) {
-    shared::ShadeTilesPush push{};
-    push.wide = groups(gbuffer.width);
-    push.high = groups(gbuffer.height);
-    if (waves) {
-      const shared::View view = gpu_views(views)[0];
-      push.sea_first = rows.front().sea ? rows.front().first : 0u;
-      push.sea_end = rows.front().sea ? rows.front().end : 0u;
-      push.deep_m = deep_below_waves_m(view, lighting, *waves);
-      push.near_m = view.near_m;
-      push.ray_corner_y = view.ray_corner.y;
-      push.ray_dx_y = view.ray_dx.y;
-      push.ray_dy_y = view.ray_dy.y;
-    }
-    NERITIC_TRY(tiles, declare_shade_tiles(graph, prefix, gbuffer, push));
-    const bool sea = push.sea_end > push.sea_first;
+    NERITIC_TRY(tiles, declare_shade_tiles(graph, prefix, gbuffer,
+                                           {groups(gbuffer.width), groups(gbuffer.height)}));
     rows = {{.surfaces = false, .list = 0}, {.surfaces = true, .list = 1}};
-    if (sea) rows.push_back({.sea = true, .surfaces = false, .list = 2});
-    if (sea) rows.push_back({.sea = true, .surfaces = true, .list = 3});
   }
   for (ShadeRows& part : rows) {
     gpu::Pipeline& pipeline = shade_[{

@@ -32,7 +32,12 @@ struct SonarWater {
   SeaWater at(double depth_below_m) const {
     return column ? column->at(depth_below_m) : SeaWater{temperature_c, salinity_psu};
   }
-  bool operator==(const SonarWater&) const = default;
+  // The same water, whoever named it.
+  bool operator==(const SonarWater& other) const {
+    return temperature_c == other.temperature_c && salinity_psu == other.salinity_psu &&
+           ph == other.ph && depth_m == other.depth_m && sound_speed_m_s == other.sound_speed_m_s &&
+           column == other.column;
+  }
 };
 
 // A table of two columns, read from a file or a list: x strictly increasing.
@@ -123,9 +128,9 @@ struct SonarGhosts {
 
 // Sound speed over depth. Absent: constant.
 struct SonarProfile {
-  SonarTable table;   // depth in metres, m/s
+  SonarTable table;     // depth in metres, m/s
+  bool bent = false;    // rays bend; else straight rays, only time differs
   bool layers = false;  // the table is that of the scene's layers
-  bool bent = false;  // rays bend; else straight rays, only time differs
   bool operator==(const SonarProfile&) const = default;
 };
 

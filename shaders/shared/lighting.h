@@ -118,16 +118,8 @@ struct ShadePush {
 struct ShadeTilesPush {
   uint wide;  // tiles of the picture
   uint high;
-  uint sea_first;  // rows of tiles from which the wavy surface can be seen
-  uint sea_end;
-  float deep_m;  // of the eye below the surface's lowest trough; not over 0: all sights can meet it
-  float near_m;
-  float ray_corner_y;  // upwards, of a view's rays
-  float ray_dx_y;
-  float ray_dy_y;
 };
-// A list's number: 1: with solids, plus 2: with the wavy surface.
-NERITIC_CONST uint kShadeTileLists = 4;
+NERITIC_CONST uint kShadeTileLists = 2;
 NERITIC_CONST uint kShadeTileHead = 4;
 NERITIC_CONST uint kShadeTilesDepth = 0;
 NERITIC_CONST uint kShadeTilesOut = 1;

@@ -15,7 +15,7 @@
 namespace neritic {
 namespace {
 
-// A vehicle with every sensor, and a diver to whom all befalls: too deep on a small tank of air, an
+// A vehicle with every sensor and a tether, and a diver to whom all befalls: too deep on a small tank of air, an
 // inflator that freezes open; richer gas for the surface.
 class DiveLog : public testing::Test {
  protected:
@@ -45,6 +45,7 @@ size_m = [0.57, 0.26, 0.46]
 dynamics = ")" + assets + R"(/vehicles/bluerov2_heavy_survey_dynamics.toml"
 position_m = [3, -150, 0]
 inputs = { setpoint = "planner" }
+tether = { from_m = [3, -140, 0], length_m = 20, segments = 2 }
 mission = { waypoints = [ { position_m = [3, -150, -1] } ] }
 )")
                     .ok());

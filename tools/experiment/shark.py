@@ -196,13 +196,14 @@ class _Flight:
 
     def _see(self):
         """Judges this instant; true when the run has told all it can."""
-        truth, time = self.world.truth("rov"), self._time()
+        truth = self.world.truth("rov")
+        time = truth.time - self.met_s
         shark, _ = shark_at(self.s, time)
         before = self.judge.blocked_s
         along, beside = self.judge.see(time, truth.position, shark, self.eyes)
         if self.person and before is None and self.judge.blocked_s is not None:
             self.person.mark("shark blocked", blocked_s=round(self.judge.blocked_s, 3))
-        self.seen_at.append((self.world.time, time, shark, self.eyes))
+        self.seen_at.append((truth.time, time, shark, self.eyes))
         self.force = max(self.force, float(np.abs(truth.thruster_n).max()))
         for key, value in (("t", time), ("beside", beside), ("along", along)):
             self.series[key].append(round(value, 4))

@@ -220,6 +220,7 @@ class Observations(Mapping[str, Union[Reading, Image]]):
 class Truth:
     """The true motion of an agent. Nothing of it is measured."""
 
+    time: float  # simulated seconds at which it holds: of a dive that runs by itself, later than the last tick
     position: Float  # of its origin: east, north, up
     orientation: Float  # world from body: x, y, z, w
     linear_velocity: Float  # over ground, body axes: forward, left, up

@@ -264,19 +264,19 @@ class Core:
     def truth(self, agent: str) -> dict[str, Any]:
         answer = self._call("truth", agent=agent)[0]
         values = np.array(answer["values"])
-        return {"position": values[0:3], "orientation": values[3:7], "linear_velocity": values[7:10],
+        return {"time": answer["time_s"], "position": values[0:3], "orientation": values[3:7], "linear_velocity": values[7:10],
                 "angular_velocity": values[10:13], "current": values[13:16],
                 "touched_steps": int(values[16]), "thruster_n": values[17:],
                 "joints": np.array(answer.get("joints", ()), np.float64)}
 
-    def poses(self) -> tuple[NDArray[np.float64], dict[int, NDArray[np.float64]]]:
+    def poses(self) -> tuple[float, NDArray[np.float64], dict[int, NDArray[np.float64]]]:
         answer, frames = self._call("poses")
         poses = np.frombuffer(frames[answer["poses"]["frame"]], "<f8").reshape(len(self.agents), 13)
         limbs = answer.get("joints")
         if limbs is None:
-            return poses, {}
+            return answer["time_s"], poses, {}
         joints = np.frombuffer(frames[limbs["frame"]], "<f8").reshape(limbs["rows"], limbs["columns"])
-        return poses, dict(zip(limbs["agents"], joints))
+        return answer["time_s"], poses, dict(zip(limbs["agents"], joints))
 
     def save(self) -> bytes:
         answer, frames = self._call("save", 10.0)
@@ -345,8 +345,8 @@ class RemoteWorld(World):
     def poses(self) -> dict[str, Truth]:
         """The true motion of every agent, in one call; without the current, forces and contacts."""
         nothing = np.zeros(0)
-        poses, joints = self._core.poses()
-        return {agent[0]: Truth(row[0:3], row[3:7], row[7:10], row[10:13], nothing, nothing, 0,
+        time_s, poses, joints = self._core.poses()
+        return {agent[0]: Truth(time_s, row[0:3], row[3:7], row[7:10], row[10:13], nothing, nothing, 0,
                                 joints.get(i, nothing))
                 for i, (agent, row) in enumerate(zip(self._core.agents, poses))}
 

@@ -99,7 +99,7 @@ class World:
 
     def truth(self, agent: str) -> Truth:
         """The true motion of the agent, apart from what is measured of it."""
-        return Truth(**self._core.truth(agent))
+        return Truth(**{"time": self._core.time, **self._core.truth(agent)})
 
     # Time.
 
