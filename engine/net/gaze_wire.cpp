@@ -19,7 +19,8 @@ constexpr float kShortest = 1e-9F, kLongest = 1e9F;
 Result<GazePacket> decode_gaze(Bytes bytes) {
   if (bytes.size() != kGazeBytes)
     return refusal(kGaze, fmt::format("{} bytes", bytes.size()), fmt::format("{}", kGazeBytes));
-  if (std::string_view(reinterpret_cast<const char*>(bytes.data()), kGazeMagic.size()) != kGazeMagic)
+  if (std::string_view(reinterpret_cast<const char*>(bytes.data()), kGazeMagic.size()) !=
+      kGazeMagic)
     return refusal(kGaze, "another beginning", "UGZD");
   if (const int version = std::to_integer<int>(bytes[4]); version != 1)
     return refusal(kGaze, fmt::format("UGZD version {}", version), "1");

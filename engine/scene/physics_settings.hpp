@@ -158,7 +158,7 @@ struct SwimPlan {
 struct Condition {
   std::vector<std::string> effects;  // empty: all
   bool acts = true;                  // on what the diver does
-  std::optional<double> water_c;  // absent: that of the water's layers, or 12
+  std::optional<double> water_c;     // absent: that of the water's layers, or 12
   double fat_share = 0.15;
   std::optional<double> oxygen_tolerance;  // absent: drawn from the scene's seed
 };

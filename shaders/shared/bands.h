@@ -1,5 +1,5 @@
-// Pictures of a spectrum: an albedo in the three thirds of the spectrum, and three bands each joined
-// to one picture by a camera's response (engine/render/bands.hpp).
+// Pictures of a spectrum: an albedo in the three thirds of the spectrum, and three bands each
+// joined to one picture by a camera's response (engine/render/bands.hpp).
 #ifndef NERITIC_SHARED_BANDS_H
 #define NERITIC_SHARED_BANDS_H
 #include "shared/types.h"

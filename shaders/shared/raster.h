@@ -116,9 +116,9 @@ NERITIC_CONST uint kMaterialEmissive = 5;
 // lane what an index picks that it cannot prove uniform, so both the texture reads of a material
 // and the view are settled when the pipeline is made.
 NERITIC_CONST uint kSpecMotion = 0;
-NERITIC_CONST uint kSpecMaterial = 1;     // the material's flags
-NERITIC_CONST uint kSpecMultiview = 2;    // 0: the set has one view
-NERITIC_CONST uint kSpecForwardGlow = 3;  // samples of a lamp's beam before blended surfaces
+NERITIC_CONST uint kSpecMaterial = 1;      // the material's flags
+NERITIC_CONST uint kSpecMultiview = 2;     // 0: the set has one view
+NERITIC_CONST uint kSpecForwardGlow = 3;   // samples of a lamp's beam before blended surfaces
 NERITIC_CONST uint kSpecForwardTerms = 4;  // of light, and the number of lamps
 NERITIC_CONST uint kSpecForwardLamps = 5;
 

@@ -33,7 +33,7 @@ struct PhysicsCondition {
   diver::ConditionSettings settings;
   bool acts = true;
   bool own_water = false;  // its temperature is named, rather than that of the water's layers
-  std::size_t place = 0;  // in PhysicsState::conditions()
+  std::size_t place = 0;   // in PhysicsState::conditions()
 };
 struct PhysicsRegulator {
   std::optional<std::size_t> donor;  // a diver

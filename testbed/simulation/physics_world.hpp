@@ -211,7 +211,7 @@ class PhysicsWorld {
   Tethers tethers_;
   double water_kg_m3_ = 1028.0;
   std::optional<WaterColumn> column_;  // the density of layers, where the scene names them
-  bool washes_ = false;  // a vehicle names its wash
+  bool washes_ = false;                // a vehicle names its wash
 };
 
 // How a vehicle with these sensors navigates, as the scene chooses; none: by its true state. An

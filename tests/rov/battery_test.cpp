@@ -97,7 +97,8 @@ TEST(RovBattery, FaultsOfItsTableAreNamed) {
               testing::HasSubstr("battery.capacity_wh: found -1; accepted: [0.01, 10000000]"));
   EXPECT_THAT(said("full_v = 10\n"),
               testing::HasSubstr("battery.full_v: found 10; accepted: [12.8,"));
-  EXPECT_THAT(said("charge = nan\n"), testing::HasSubstr("battery.charge: found \"nan\"; accepted: a number"));
+  EXPECT_THAT(said("charge = nan\n"),
+              testing::HasSubstr("battery.charge: found \"nan\"; accepted: a number"));
   EXPECT_THAT(said("volts = 3\n"), testing::HasSubstr("battery.volts: not known"));
 }
 
