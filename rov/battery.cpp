@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/core/math.hpp"
-#include "engine/core/refusal.hpp"
+#include "rov/bounds.hpp"
 
 namespace neritic::rov {
 namespace {
@@ -26,19 +26,12 @@ void load(const Battery& b, double power_w, BatteryState& state) {
 }  // namespace
 
 Status check_battery(const Battery& b) {
-  const struct {
-    const char* name;
-    double value, least, most;
-  } bounds[] = {
+  const Bound bounds[] = {
       {"capacity_wh", b.capacity_wh, 0.01, 1e7}, {"empty_v", b.empty_v, 1.0, 1000.0},
       {"full_v", b.full_v, b.empty_v, 1000.0},   {"resistance_ohm", b.resistance_ohm, 0.0, 10.0},
       {"hotel_w", b.hotel_w, 0.0, 1e5},          {"propeller_m", b.propeller_m, 0.005, 10.0},
       {"efficiency", b.efficiency, 0.01, 1.0},   {"charge", b.charge, 0.0, 1.0}};
-  for (const auto& bound : bounds)
-    if (!(bound.value >= bound.least && bound.value <= bound.most))
-      return refusal(fmt::format("battery.{}", bound.name), fmt::format("{}", bound.value),
-                     fmt::format("[{}, {}]", bound.least, bound.most));
-  return {};
+  return check_bounds("battery", bounds);
 }
 
 // The voltage falls evenly with the charge.

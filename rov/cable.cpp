@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/refusal.hpp"
+#include "rov/bounds.hpp"
 
 namespace neritic::rov {
 namespace {
@@ -13,11 +14,6 @@ constexpr double kCreep_m_s = 1e-3;  // slower, friction is linear in the speed
 constexpr double kSmallStep_m_s = 1e-9;
 constexpr std::uint32_t kMostRounds = 200;
 constexpr int kMostHalvings = 40;
-
-struct CableBound {
-  const char* name;
-  double value, least, most;
-};
 
 Mat3 outer(const Vec3& a, const Vec3& b) {
   return glm::outerProduct(a, b);
@@ -297,7 +293,7 @@ double catenary_parameter(double ratio) {
 }  // namespace
 
 Status check_cable(const Cable& c) {
-  const CableBound bounds[] = {
+  const Bound bounds[] = {
       {"segments", static_cast<double>(c.segments), 1.0, static_cast<double>(kMostCableSegments)},
       {"diameter_m", c.diameter_m, 1e-4, 1.0},
       {"net_weight_n_m", c.net_weight_n_m, -1e4, 1e4},
@@ -308,10 +304,7 @@ Status check_cable(const Cable& c) {
       {"added_mass", c.added_mass, 0.0, 10.0},
       {"water_kg_m3", c.water_kg_m3, 0.0, 2000.0},
       {"gravity_m_s2", c.gravity_m_s2, 0.0, 100.0}};
-  for (const CableBound& b : bounds)
-    if (!(b.value >= b.least && b.value <= b.most))
-      return refusal(fmt::format("tether.{}", b.name), fmt::format("{}", b.value),
-                     fmt::format("[{}, {}]", b.least, b.most));
+  NERITIC_TRY_STATUS(check_bounds("tether", bounds));
   if (!(c.line_kg_m() >= 1e-4))
     return refusal("tether.net_weight_n_m", fmt::format("{}", c.net_weight_n_m),
                    fmt::format("over {:.4g}, since a line without mass would have that",

@@ -4,14 +4,10 @@
 #include <cmath>
 
 #include "engine/core/refusal.hpp"
+#include "rov/bounds.hpp"
 
 namespace neritic::rov {
 namespace {
-
-struct Bound {
-  const char* name;
-  double value, least, most;
-};
 
 // Gauss's three points and weights on [0, 1]: exact for the quadratic drag of a linear velocity
 // that does not change its sign.
@@ -29,10 +25,7 @@ Status check_tether(const Tether& t) {
                           {"normal_drag", t.normal_drag, 0.0, 10.0},
                           {"tangential_drag", t.tangential_drag, 0.0, 10.0},
                           {"water_kg_m3", t.water_kg_m3, 0.0, 2000.0}};
-  for (const Bound& b : bounds)
-    if (!(b.value >= b.least && b.value <= b.most))
-      return refusal(fmt::format("tether.{}", b.name), fmt::format("{}", b.value),
-                     fmt::format("[{}, {}]", b.least, b.most));
+  NERITIC_TRY_STATUS(check_bounds("tether", bounds));
   if (!is_finite(t.attachment_m) || glm::length(t.attachment_m) > 100.0)
     return refusal("tether.attachment_m", "another point", "one within 100 m of the body's origin");
   return {};
