@@ -143,7 +143,7 @@ Result<graph::ImageHandle> declare_focus_and_shutter(const FrameParts& frame,
 Result<graph::ImageHandle> declare_lit(const FrameParts& frame, const std::string& prefix,
                                        const render::GBuffer& g, const render::ViewSet& views,
                                        const render::DrawList& draws, const ViewsRequest& request,
-                                       ViewsWork& work, const shared::Lighting& lighting,
+                                       const ViewsWork& work, const shared::Lighting& lighting,
                                        const render::LightImages& light) {
   const scene::PictureDetail& detail = request.detail;
   graph::ImageHandle scattered;
@@ -179,9 +179,7 @@ Result<graph::ImageHandle> declare_lit(const FrameParts& frame, const std::strin
                                                             frame.state.time_s, frame.scene.seed));
   }
   if (render::has_particles(frame.scene)) {
-    const double time_s = frame.state.time_s, step_s = frame.state.next_time_s - time_s;
-    work.particles = render::view_particles(frame.motion, frame.snow, frame.scene.seed, views,
-                                            time_s, detail.particles);
+    const double step_s = frame.state.next_time_s - frame.state.time_s;
     const double shutter = step_s > 0.0 ? work.particles.shutter_s / step_s : 0.0;
     NERITIC_TRY(
         hdr, frame.renderer.water().declare_particles(
@@ -195,7 +193,7 @@ Result<graph::ImageHandle> declare_lit(const FrameParts& frame, const std::strin
 Result<graph::ImageHandle> declare_spectrum(const FrameParts& frame, const std::string& prefix,
                                             const render::GBuffer& g, const render::ViewSet& views,
                                             const render::DrawList& draws,
-                                            const ViewsRequest& request, ViewsWork& work,
+                                            const ViewsRequest& request, const ViewsWork& work,
                                             const shared::Lighting& lighting,
                                             const render::LightImages& light) {
   const render::BandSet bands = render::make_bands(*request.camera->terms.spectrum);
@@ -224,6 +222,10 @@ Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::str
                                     frame.gpu_scene.has_emission()));
   NERITIC_TRY(const render::LightImages light,
               declare_light(frame, prefix, g, views, draws, detail, work, lighting));
+  // Once for all bands: the passes borrow them until the graph has run.
+  if (render::has_particles(frame.scene))
+    work.particles = render::view_particles(frame.motion, frame.snow, frame.scene.seed, views,
+                                            frame.state.time_s, detail.particles);
   NERITIC_TRY(graph::ImageHandle hdr,
               request.camera && request.camera->terms.spectrum
                   ? declare_spectrum(frame, prefix, g, views, draws, request, work, lighting, light)
