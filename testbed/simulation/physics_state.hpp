@@ -328,19 +328,11 @@ class PhysicsState
     auto batteries = self.batteries();
     field("batteries", batteries);
   }
-  // The hash covers groups once a live source was asked for, and navigation, objects, modems,
-  // conditions, regulators, things, limbs, tethers and batteries where there are any.
+  // The hash covers groups once a live source was asked for, and of the kinds after the first three
+  // those that the scene has.
   std::span<const std::uint64_t> hashed_counts() const {
-    const std::size_t kinds = !batteries().empty()    ? kKinds
-                              : !tethers().empty()    ? 14
-                              : !limbs().empty()      ? 12
-                              : !things().empty()     ? 11
-                              : !regulators().empty() ? 9
-                              : !conditions().empty() ? 8
-                              : !modems().empty()     ? 7
-                              : !objects().empty()    ? 5
-                              : !navigation().empty() ? 4
-                                                      : 3;
+    std::size_t kinds = kKinds;
+    while (kinds > 3 && counts()[kinds - 1] == 0) --kinds;
     return std::span(counts()).first(kinds);
   }
   static void hashed_fields(auto&& field, auto& self) {
