@@ -1,0 +1,289 @@
+"""Detectors of tools/experiment without the program: boxes, crops, training and looking. Exit 77: skipped."""
+import json
+import os
+import re
+import shutil
+import sys
+import tempfile
+import unittest
+from types import SimpleNamespace
+
+try:
+    import numpy as np
+except ModuleNotFoundError:
+    sys.exit(77)
+
+HERE = os.path.dirname(os.path.realpath(__file__))
+sys.dont_write_bytecode = True
+TOOLS = os.path.join(HERE, "..", "..", "tools", "experiment")
+sys.path.insert(0, TOOLS)
+
+import crops
+import detector
+import looking
+import places
+import sonar_crops
+from scenario import Failed, Refused
+
+try:
+    import cv2
+except ModuleNotFoundError:
+    cv2 = None
+try:
+    import torch
+except ModuleNotFoundError:
+    torch = None
+
+
+class Boxes(unittest.TestCase):
+    """One thing of class 1 with its middle at (32, 16), 20 wide and 8 high, in the raw output of each kind."""
+
+    def found(self, kind, rows):
+        (name, sure, box), = [r for r in looking.boxes_of(kind, np.array(rows, np.float32), 2, 64) if r[1] > 0.1]
+        self.assertEqual(name, 1)
+        np.testing.assert_allclose(box, [22, 12, 20, 8], atol=1e-4)
+        return sure
+
+    def test_yolo5_multiplies_objectness_and_share(self):
+        self.assertAlmostEqual(self.found("yolo5", [[[32, 16, 20, 8, 0.9, 0.1, 0.8], [5, 5, 2, 2, 0.01, 0.5, 0.5]]]), 0.72, 5)
+
+    def test_yolo8_lies_on_its_side(self):
+        self.assertAlmostEqual(self.found("yolo8", np.transpose([[[32, 16, 20, 8, 0.1, 0.8], [5, 5, 2, 2, 0, 0]]], (0, 2, 1))), 0.8, 5)
+
+    def test_ssd_tells_corners_as_shares(self):
+        self.assertAlmostEqual(self.found("ssd", [[[[0, 1, 0.7, 22 / 64, 12 / 64, 42 / 64, 20 / 64]]]]), 0.7, 5)
+
+    def test_rows_of_another_width_are_told(self):
+        with self.assertRaisesRegex(Failed, "rows of 6 numbers; accepted: 7 for 2 classes of yolo5"):
+            looking.boxes_of("yolo5", np.zeros((1, 3, 6)), 2, 64)
+
+
+class Crops(unittest.TestCase):
+    def test_no_place_or_model_of_the_test_is_learnt_from(self):
+        of = {k: set(v["places"]) for k, v in places.SPLITS.items()}
+        self.assertFalse(of["test"] & (of["train"] | of["choose"]) or of["train"] & of["choose"])
+        self.assertFalse(set(places.SPLITS["test"]["waters"]) & {w for k in ("train", "choose") for w in places.SPLITS[k]["waters"]})
+        for split, names in of.items():
+            for name in names:
+                self.assertTrue(places.PLACES[name].format(floor=-10, assets="A").count("[[objects]]") > 0 or name == "open", name)
+                for object_name in re.findall('^name = "(.*)"', places.PLACES[name], re.M):
+                    self.assertRegex(object_name, "^[A-Za-z0-9_-]{1,64}$")
+        models = [set(part.split('"')[0] for n in of[k] for part in places.PLACES[n].split("models/")[1:]) for k in ("test", "train", "choose")]
+        self.assertFalse(models[0] & (models[1] | models[2]))
+
+    def test_what_nobody_could_name_is_no_crop(self):
+        light = np.tile(np.linspace(60, 120, 64)[:, None, None], (1, 64, 3))
+        its = np.zeros((64, 64), bool)
+        its[20:34, 20:34] = True
+        for off, seen in ((0.0, False), (crops.LEAST_CONTRAST - 1, False), (crops.LEAST_CONTRAST + 1, True)):
+            self.assertEqual(crops.visible(light + off * its[..., None], its), seen)
+        small = np.zeros((64, 64), bool)
+        small[30:40, 30:40] = True  # 100 pixels
+        self.assertFalse(crops.visible(light + 50 * small[..., None], small))
+
+    def test_sonar_pictures_are_64_by_64_whatever_the_bins_and_things_in_noise_are_no_crops(self):
+        rng = np.random.Generator(np.random.Philox(key=3))
+        for finer in (1, 2, 5):
+            echoes = rng.gamma(1.0, 1.0, (64 * finer, 64))
+            echoes[20 * finer:26 * finer, 30:36] *= 300
+            pixels = sonar_crops.picture(echoes)
+            self.assertEqual((pixels.shape, pixels.dtype), ((64, 64), np.uint8))
+            its = np.zeros((64, 64), bool)
+            its[20:26, 30:36] = True
+            self.assertGreater(pixels[its].mean(), pixels[~its].mean() + 80)
+            self.assertTrue(sonar_crops.heard(pixels, its))
+            few = np.zeros((64, 64), bool)
+            few[20:22, 30:36] = True
+            faint = np.zeros((64, 64), bool)
+            faint[40:46, 30:36] = True
+            self.assertFalse(sonar_crops.heard(pixels, few) or sonar_crops.heard(pixels, faint))
+
+    @unittest.skipIf(torch is None, "no PyTorch here")
+    def test_lessons_vary_by_the_seed_and_keep_their_thing(self):
+        import variations
+        pictures = np.full((10, 96, 96, 4), 90, np.uint8)
+        pictures[..., 3] = 0
+        pictures[5:, 36:60, 36:60] = [200, 180, 40, 255]
+        classes = np.array([0] * 5 + [1] * 5)
+        one, other = (variations.of(torch, pictures, classes, seed) for seed in (7, 7))
+        for _ in range(3):
+            (x, y), (again, _) = one(16), other(16)
+            self.assertTrue(torch.equal(x, again))
+            self.assertEqual(tuple(x.shape), (16, 3, 64, 64))
+            np.testing.assert_allclose(x.mean((2, 3)).numpy(), 0, atol=1e-4)
+            for i in range(16):  # a bright thing of at least 2.5 % is there, or is not
+                self.assertEqual(bool((x[i, 0] > 1.5).float().mean() > 0.02 and x[i, 0].max() - x[i, 0].mean() > 1.5 and y[i] == 1), bool(y[i] == 1))
+
+
+FAKE = """import numpy as np
+CLASSES, SCENES, STEPS = ["nothing", "bar"], 10, 24
+class Maker:
+    def __init__(self, tools, split, seed):
+        self.rng = np.random.Generator(np.random.Philox(key=seed + len(split)))
+    def one(self, name):
+        picture = self.rng.integers(0, 60, (64, 64)).astype(np.uint8)
+        picture[26:36] += 150 * (name == "bar")
+        return picture, 1.0
+    def close(self):
+        pass
+"""
+
+
+@unittest.skipIf(torch is None or cv2 is None, "no PyTorch or no OpenCV here")
+class Training(unittest.TestCase):
+    def test_weights_are_made_again_to_the_bit_and_read_by_opencv(self):
+        import importlib.util
+        import training
+        spec = importlib.util.spec_from_file_location("experiment_main", os.path.join(TOOLS, "__main__.py"))
+        program = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(program)
+        before = training.EACH, training.EACH_CHOOSE
+        training.EACH, training.EACH_CHOOSE = 8, 4
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "fake_crops.py"), "w") as file:
+                file.write(FAKE)
+            sys.path.insert(0, folder)
+            try:
+                import fake_crops
+                program.TRAINED["train_fake"] = ("fake", fake_crops, 1)
+                made = []
+                for workers in (1, 2):
+                    out = os.path.join(folder, str(workers))
+                    asked = SimpleNamespace(name="train_fake", out=out, program="none", runs=10, seed=3, workers=workers, quiet=True, set=[])
+                    self.assertEqual(program.train(asked), 0)
+                    with open(os.path.join(out, "fake.onnx"), "rb") as file:
+                        made.append(file.read())
+                    self.assertEqual(sorted(os.listdir(out)), ["fake.json", "fake.onnx"])
+                self.assertEqual(*made)
+                look = looking.Detector(os.path.join(out, "fake.onnx"))
+                bar = fake_crops.Maker(None, "test", 99)
+                self.assertGreater(look.shares(bar.one("bar")[0])[1], look.shares(bar.one("nothing")[0])[1] + 0.2)
+                self.goes_on_from(program, training, os.path.join(out, "fake.onnx"), look, bar.one("bar")[0], folder)
+            finally:
+                sys.path.remove(folder)
+                training.EACH, training.EACH_CHOOSE = before
+
+
+    def goes_on_from(self, program, training, path, look, picture, folder):
+        """The file read as a module answers as OpenCV does, and training goes on from it."""
+        import onnx_network
+        blob = torch.tensor(looking.normalised(picture).transpose(2, 0, 1)[None])
+        with torch.no_grad():
+            answer = onnx_network.module_of(torch, path).eval()(blob).softmax(1)[0].numpy()
+        np.testing.assert_allclose(answer, look.forward(picture).ravel(), atol=1e-5)
+        out = os.path.join(folder, "more")
+        asked = SimpleNamespace(name="train_fake", out=out, program="none", runs=10, seed=3, workers=1, quiet=True,
+                                set=[f"from={path}", "steps=2", "draw=5"])
+        self.assertEqual(program.train(asked), 0)
+        with open(os.path.join(out, "fake.json")) as file:
+            self.assertIn("--set steps=2 --set draw=5", json.load(file)["made_by"])
+        looking.Detector(os.path.join(out, "fake.onnx"))
+        for text in ("steps=0", "steps=-3", "draw=x", "form=a", "from="):
+            with self.assertRaisesRegex(Refused, "accepted: steps=N"):
+                training.settings_of([text], 3, 1)
+        bad = os.path.join(folder, "bad.onnx")
+        with open(path, "rb") as file:
+            data = file.read()
+        for broken in (b"", b"not a network", data[:len(data) // 2], data[:40]):
+            with open(bad, "wb") as file:
+                file.write(broken)
+            with self.assertRaisesRegex(Refused, "accepted: "):
+                onnx_network.module_of(torch, bad)
+
+
+@unittest.skipIf(cv2 is None, "no OpenCV here")
+class Looking(unittest.TestCase):
+    def test_bad_files_are_refused_in_one_line(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "net.onnx")
+            with self.assertRaisesRegex(Refused, "found no such file"):
+                looking.Detector(path)
+            with open(path, "wb") as file:
+                file.write(b"\x08\x07not a network" * 20)
+            about = os.path.join(folder, "net.json")
+            for text, words in (("{", "found no description"), ('{"kind": "classifier", "classes": [], "side": 64}', "0 classes"),
+                                ('{"kind": "guess", "classes": ["a"], "side": 64}', "kind 'guess'"),
+                                ('{"kind": "classifier", "classes": ["a"], "side": 64}', "cannot read")):
+                with open(about, "w") as file:
+                    file.write(text)
+                with self.assertRaisesRegex(Refused, words):
+                    looking.Detector(path)
+
+    @unittest.skipUnless(os.path.exists(detector.model_of("shipped")), "no shipped detector")
+    def test_several_look_with_their_mean_and_both_ways_round(self):
+        picture = np.random.Generator(np.random.Philox(key=2)).integers(0, 255, (64, 64, 3), dtype=np.uint8)
+        pair = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, pair)
+        for name, of, more in (("a", "shipped", {"with": ["b.onnx"], "power": 1.3}), ("b", "small", {})):
+            shutil.copy(detector.model_of(of), os.path.join(pair, name + ".onnx"))
+            with open(os.path.join(pair, name + ".json"), "w") as file:
+                json.dump({"kind": "classifier", "classes": crops.CLASSES, "side": 64, "mirror": True, **more}, file)
+        path = os.path.join(pair, "a.onnx")
+        shipped = looking.Detector(path)
+        self.assertEqual(len(shipped.others), 1)
+        views = []
+        for one in (shipped, *shipped.others):
+            for side in (picture, np.ascontiguousarray(picture[:, ::-1])):
+                one._net.setInput(np.ascontiguousarray(looking.normalised(side).transpose(2, 0, 1)[None]))
+                views.append(one._net.forward().ravel().astype(float))
+        mean = np.mean(views, axis=0) ** shipped.power
+        np.testing.assert_allclose(shipped.shares(picture), mean / mean.sum(), atol=1e-6)
+        self.assertEqual(len(looking.files_of(path)), 4)
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("a.onnx", "b.onnx"):
+                shutil.copy(detector.model_of("small"), os.path.join(folder, name))
+            about = {"kind": "classifier", "classes": crops.CLASSES, "side": 64}
+            for a, b, words in (({"with": ["b.onnx"]}, {"with": ["a.onnx"]}, "looks with another"), ({"with": ["a.onnx"]}, {}, "found with"),
+                                ({"with": ["../b.onnx"]}, {}, "beside it"), ({"with": ["b.onnx"]}, {"classes": ["a"]}, "of the same classes"),
+                                ({"power": True}, {}, "found power True"), ({"mirror": 1}, {}, "mirror 1")):
+                for name, more in (("a", a), ("b", b)):
+                    with open(os.path.join(folder, name + ".json"), "w") as file:
+                        json.dump({**about, **more}, file)
+                with self.assertRaisesRegex(Refused, words):
+                    looking.Detector(os.path.join(folder, "a.onnx"))
+
+    @unittest.skipUnless(os.path.exists(detector.model_of("shipped")), "no shipped detector")
+    def test_looks_at_one_thing_count_together_and_their_number_is_checked(self):
+        rng = np.random.Generator(np.random.Philox(key=4))
+        looks = rng.integers(0, 255, (3, 64, 64, 3), dtype=np.uint8)
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "a.onnx")
+            shutil.copy(detector.model_of("small"), path)
+
+            def with_more(**more):
+                with open(os.path.join(folder, "a.json"), "w") as file:
+                    json.dump({"kind": "classifier", "classes": crops.CLASSES, "side": 64, **more}, file)
+                return looking.Detector(path)
+            alone = with_more()
+            mean = np.mean([alone.shares(look) for look in looks], axis=0) ** 1.5
+            np.testing.assert_allclose(with_more(looks=3, power=1.5).shares(looks), mean / mean.sum(), atol=1e-6)
+            for wrong, pixels in ((with_more(looks=3), looks[:2]), (with_more(looks=3), looks[0]), (alone, looks)):
+                with self.assertRaisesRegex(Failed, "accepted: [13] of one thing"):
+                    wrong.shares(pixels)
+            for bad in (0, 1.5, True, "3"):
+                with self.assertRaisesRegex(Refused, "a whole number in"):
+                    with_more(looks=bad)
+
+    @unittest.skipUnless(os.path.exists(detector.model_of("shipped")), "no shipped detector")
+    def test_a_thread_answers_and_drops_what_is_old(self):
+        shipped = looking.Detector(detector.model_of("shipped"))
+        self.assertEqual(shipped.classes, crops.CLASSES)
+        self.assertLess(os.path.getsize(detector.model_of("shipped")), 1_400_000)
+        rng = np.random.Generator(np.random.Philox(key=1))
+        picture = rng.integers(0, 255, (48, 80, 3), dtype=np.uint8)
+        shares = shipped.shares(picture)
+        self.assertAlmostEqual(float(shares.sum()), 1.0, 5)
+        np.testing.assert_array_equal(shares, shipped.shares(picture))  # the same bits
+        looker = looking.Looker(shipped, 0.0)
+        for i in range(50):
+            looker.show(picture, i)
+        told = looker.answers(wait_s=10)
+        while told[-1]["sequence"] != 49:
+            told += looker.answers(wait_s=10)
+        looker.close()
+        self.assertEqual(len(told) + looker.dropped, 50)
+        self.assertTrue(all(a["latency_s"] >= a["work_s"] > 0 for a in told))
+
+
+if __name__ == "__main__":
+    unittest.main()
