@@ -64,7 +64,7 @@ struct CableEnds {
   Mat3 end_mass_kg{0.0};  // of the body at that point; 0: the end is free
 };
 
-// What a segment must not pass: gap + n . (its point's way in this step) >= 0.
+// A plane that a segment must not pass: gap + n . (its point's way in this step) >= 0.
 struct CableContact {
   std::uint32_t segment = 0;  // 0 is at the top
   double share = 0.0;         // of the segment, from its upper end: the point

@@ -4,7 +4,7 @@
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// What lies behind layers of water that bend sight (shared/shimmer.h): each pixel shows the place where its turned
+// Bends sight behind layers of water (shared/shimmer.h): each pixel shows the place where its turned
 // sight ends. Pixels whose sights cross no layer stay as they are, bit by bit.
 #include "shared/lighting.h"
 #include "shared/raster.h"
@@ -84,10 +84,10 @@ void main() {
   vec2 shift = vec2(dot(off, dx) / dot(dx, dx), dot(off, dy) / dot(dy, dy));
   vec2 from = vec2(at.xy) + shift;
   ivec2 nearest = clamp(ivec2(round(from)), ivec2(0), size - 1);
-  // What stands before the layers hides nothing that they bend, and nearer things move less.
+  // Things before the layers hide nothing that these bend, and nearer things move less.
   float there_m = length_at(ivec3(nearest, at.z), near_m, stretch);
   shift *= clamp((1.0 - crossing_m / there_m) / max(1.0 - crossing_m / length_m, 1e-3), 0.0, 1.0);
-  // What lies beyond the picture's edge is mirrored at it: clamped it would show as streaks.
+  // Places beyond the picture's edge are mirrored at it: clamped they would show as streaks.
   vec2 last = vec2(size - 1);
   from = clamp(last - abs(last - abs(vec2(at.xy) + shift)), vec2(0.0), last);
   vec2 low = floor(from), part = from - low;

@@ -249,8 +249,8 @@ class Renderer {
                                                   const std::string& prefix, const GBuffer& gbuffer,
                                                   const shared::ShadeTilesPush& push);
   enum class RasterStage { kGeometry, kGeometryMasked, kShape, kSurface, kForward };
-  // What the forward stage's shader is compiled with: the terms of light, the number of lamps,
-  // samples of inscatter. None in other stages.
+  // The forward stage's shader is compiled with these: the terms of light, the number of lamps,
+  // samples of inscatter. Other stages have none of them.
   struct ForwardLight {
     std::uint32_t terms = 0, lamps = 0, inscatter_samples = 0;
     auto operator<=>(const ForwardLight&) const = default;

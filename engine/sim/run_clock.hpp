@@ -20,7 +20,7 @@ class RunClock final : public StepClock {
   TimeNs at(TimeNs host_ns);
   // Waits in short pieces, since speed and pause may change meanwhile.
   void wait_until(TimeNs run_ns) override;
-  // Of a time at which the run stood: when it went on, or now.
+  // A time at which the run stood gives when it went on, or now.
   TimeNs host_at(TimeNs run_ns) override;
 
   // Run seconds a host second; clamped to kSlowest to kFastest.

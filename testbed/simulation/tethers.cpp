@@ -58,7 +58,7 @@ double contact_radius_m(const PhysicsTether& tether) {
   return std::max(0.5 * tether.cable.diameter_m, kLeastContactRadius_m);
 }
 
-// What a segment is near, appended to out.
+// Appends to out the solid things that a segment is near.
 void find_contacts(const PhysicsTether& tether, std::uint32_t segment, const Vec3& from_m,
                    const Vec3& to_m, double margin_m, const sim::StaticWorld& solid,
                    sim::ContactMemory& memory, std::vector<rov::CableContact>& out) {
@@ -146,7 +146,7 @@ bool Tethers::step(std::size_t index, const sim::StaticWorld& solid, const Physi
   const Quat& turned = body.free.world_from_body.rotation;
   rov::CableEnds ends;
   ends.top_before_ned_m = was.top_ned_m;
-  // What carries the top and moves by physics is where it was before the step.
+  // A carrier of the top that moves by physics is still where it was before the step.
   ends.top_after_ned_m =
       rov::ned_from_world(tether.top.at(before, time.time_s() + dt_s).position_m);
   ends.end_free_ned_m = rov::ned_from_world(body.free.world_from_body * at_m);
