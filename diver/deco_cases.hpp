@@ -1,8 +1,8 @@
 // Cases of decompression from a file of the format of deco_vectors.json: dives with the results of
 // a planner of the same conventions, and tables of times without stops. Any thread.
 //
-// JSON; bar, m, min, gases in percent. [] holds the default of a member that may be missing. Of
-// all that is expected, what is there is compared.
+// JSON; bar, m, min, gases in percent. [] holds the default of a member that may be missing.
+// Every expected value that a file has is compared.
 //   tolerances: tissues_bar [1e-6], ndl_continuous_min [1e-3]
 //   profiles: list of
 //     id; model: "ZH-L16B-GF" (first compartment 1b, 5 min) or "ZH-L16C-GF" (1, 4 min)

@@ -29,8 +29,8 @@ struct FlutterKick {
   double twist_rad = 0.0;
 };
 
-// Legs of a body at that phase (2 pi a beat of both legs), with the other joints as they are. Of
-// the left leg; the right one is half a beat later. Angles stay in the range of joints.
+// Legs of a body at that phase (2 pi a beat of both legs), with the other joints as they are. The
+// phase is the left leg's; the right one is half a beat later. Angles stay in the range of joints.
 void set_flutter(JointAngles& joints, const Body& body, const FlutterKick& kick, double phase_rad);
 
 // A swimmer's posture: arms along the sides, legs straight, toes pointed, looking ahead.

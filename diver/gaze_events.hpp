@@ -31,7 +31,7 @@ struct GazeSettings {
   double velocity_rad_s = radians(30.0);
   double velocity_window_s = 0.010;
   // Noise that would pass for saccades is averaged over windows up to the widest one; where that
-  // does not suffice the velocity asked rises to so many deviations of the noise (Engbert and
+  // does not suffice the threshold rises to a multiple of the noise's deviation (Engbert and
   // Kliegl 2003: 6; their velocity, the difference of means, in windows wider than the above).
   double widest_window_s = 0.040, noise_deviations = 6.0;
   double bridge_s = 0.075, merge_s = 0.075, merge_rad = radians(0.5), least_fixation_s = 0.060;

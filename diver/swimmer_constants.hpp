@@ -25,7 +25,7 @@ inline constexpr double kMetresABeat = 0.52;
 // to the outer; trunk 80 forward, 25 back, 35 to a side, 45 of twist (AAOS 1965, Joint Motion).
 // Both legs up or down, and one up and one down: free.
 inline constexpr double kMostLift_rad = radians(18.0), kMostTwist_rad = radians(14.0);
-// One leg beats so much wider than the mean, the other narrower: free.
+// One leg beats by this share wider than the mean, the other narrower: free.
 inline constexpr double kMostLeftMore = 0.5;
 // Back and legs to a side. Less bend turns more slowly: at 0.7 times the diver misses the place
 // behind by 0.9 m. Legs aside: free.

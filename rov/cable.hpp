@@ -103,7 +103,7 @@ struct CableWork {
 
 // currents: at top, nodes and end: segments + 1. nodes: the segments - 1 between them, before and
 // after. Precondition: all finite, dt_s > 0, length_m > 0, a checked cable; work for as many
-// segments. What is not finite afterwards leaves the nodes as they were, converged false.
+// segments. If a result is not finite, the nodes stay as they were and converged is false.
 CablePull step_cable(const Cable& cable, double length_m, const CableEnds& ends,
                      std::span<const Vec3> currents_ned_m_s, std::span<const CableContact> contacts,
                      double dt_s, std::span<CableNode> nodes, CableWork& work);

@@ -12,9 +12,9 @@
 //     map [optional]: "tau=M_RB*u (paper), F=scale(pinv tau)";
 //     results: by "PLANT/MANOEUVRE". PLANT is neutral, fresh or sea (the BlueROV2 Heavy's
 //     buoyancy); MANOEUVRE is surge_, sway_, depth_ with metres (surge_2m, depth_+1m), roll_,
-//     pitch_, yaw_ with degrees (yaw_90deg), or any name with waypoints (p, yaw) and radius. Of
+//     pitch_, yaw_ with degrees (yaw_90deg), or any name with waypoints (p, yaw) and radius.
 //     rise_10_90, t90, overshoot_pct, settle_s, final_error, max_tilt_deg, max_thruster_N,
-//     arrival_s, end_state what is there is compared. A run begins at rest at 10 m and lasts 15 s,
+//     arrival_s, end_state: compared if present. A run begins at rest at 10 m and lasts 15 s,
 //     with waypoints 40 s; priority: "none" or "level", the law of missions (thrust_priority.hpp)
 //     ["none"], is this project's own member
 // A text under another name is not read. Other members are errors.

@@ -17,11 +17,11 @@ constexpr double kUnknown_rad = 1.0;
 // deepest sea, and speeds that no vehicle has.
 constexpr double kMostForce_m_s2 = 160.0, kMostTurning_rad_s = 35.0;
 constexpr double kMostSpeed_m_s = 50.0, kMostDepth_m = 12e3, kMostFix_m = 1e7;
-// Rejections over this time, and at least so many, before a sensor is believed again.
+// Rejections over this time, and at least this number, before a sensor is believed again.
 constexpr double kPatience_s = 10.0;
 constexpr double kLeastPatience = 5.0;
 
-// An inertial reading holds for so many periods.
+// An inertial reading holds for this number of periods.
 constexpr double kHeldPeriods = 4.0;
 
 // The covariance follows the motion at least this often: its transition takes the attitude for

@@ -30,7 +30,7 @@ int places_over(const BeamPattern& pattern, double width_rad) {
 }  // namespace
 
 double heard_half_rad(double half_rad, const HeadPatterns& patterns) {
-  // An aperture much narrower than its pattern still cuts the wedge, at so many apertures.
+  // An aperture much narrower than its pattern still cuts the wedge, at this number of apertures.
   constexpr double kMostApertures = 9.0;
   if (!patterns.upright()) return half_rad;
   return std::min(std::max(half_rad, patterns.upright()->second_null_rad()),

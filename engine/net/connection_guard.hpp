@@ -39,7 +39,7 @@ class ConnectionGuard {
   void closed(int fd);
   // A whole message came from it; with the first its handshake is finished.
   void heard(int fd);
-  // Whether so many bytes may still be sent to it; counts them as sent if so.
+  // Whether these bytes may still be sent to it; counts them as sent if so.
   bool send(int fd, std::uint64_t bytes);
   // Cuts those that send without an end. Some times a second.
   void look();

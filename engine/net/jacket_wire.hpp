@@ -33,7 +33,7 @@ Result<JacketPacket> decode_jacket(Bytes bytes);
 // With counters version 1, else the three raw bytes.
 std::vector<std::byte> encode_jacket(const JacketPacket& packet);
 
-// CRC-16/CCITT-FALSE: polynomial 0x1021, start 0xffff. Of "123456789": 0x29b1.
+// CRC-16/CCITT-FALSE: polynomial 0x1021, start 0xffff. "123456789" gives 0x29b1.
 std::uint16_t crc16(Bytes bytes);
 
 }  // namespace neritic::net

@@ -56,8 +56,8 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
   for (const std::uint32_t mask : view_masks_of(layers, device_)) {
     NERITIC_TRY(PreparedDraws prepared,
                 prepare(scene, draws, draws.opaque, kind, false, motion, false, mask, parts, {}));
-    // A sonar hears blended surfaces as solid ones; a camera draws them in the forward pass. What
-    // glows is drawn last also where nothing of the glow is kept: the same pixels win.
+    // A sonar hears blended surfaces as solid ones; a camera draws them in the forward pass.
+    // Glowing surfaces come last even if nothing of the glow is kept: the same pixels win.
     if (!surface) {
       const bool shape = kind == GBufferKind::kShape;
       NERITIC_TRY(PreparedDraws more, prepare(scene, draws, shape ? draws.opaque : draws.blended,

@@ -31,7 +31,7 @@ struct DrawnLarger {
 };
 
 // The most things that are drawn larger in a view set, the smallest labels first. Objects with more
-// copies keep their size: so many echo together, and each, larger, would hide others.
+// copies keep their size: they echo together, and each, larger, would hide others.
 inline constexpr std::size_t kMostDrawnLarger = 512;
 
 // Opaque objects and copies smaller than the least; what bends by the ball round it. Each grows

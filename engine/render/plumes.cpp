@@ -20,7 +20,7 @@ constexpr double kSmall_m = 1.3e-3;
 constexpr double kOutShare = 0.45, kMostBubbles = 400.0;
 // The plume drags water up with it, m/s.
 constexpr double kPlumeRise_m_s = 0.12;
-// Silt: a puff each so many seconds; its first radius; how it spreads (m^2/s).
+// Silt: seconds from puff to puff; its first radius; how it spreads (m^2/s).
 constexpr double kPuffEvery_s = 0.4, kPuff_m = 0.10, kPuffSpread_m2_s = 2e-3;
 
 double bounded_normal(const RandomKey& key, std::uint64_t index) {

@@ -41,7 +41,7 @@ void begin_rendering(VkCommandBuffer cmd, const GBuffer& gbuffer, std::uint32_t 
                      std::span<const VkRenderingAttachmentInfo> colors,
                      const VkRenderingAttachmentInfo& depth);
 
-// Workgroups along a side of so many pixels.
+// Workgroups along a side of this number of pixels.
 constexpr std::uint32_t groups(std::uint32_t size) {
   return (size + shared::kShadeGroup - 1) / shared::kShadeGroup;
 }

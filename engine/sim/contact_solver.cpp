@@ -12,7 +12,7 @@ namespace {
 constexpr int kMostRounds = 200;
 // Rounds end when no contact's velocity changes by more than this share of the fastest approach.
 constexpr double kTolerance = 1e-9;
-// After so many rounds a larger share is enough: what is left is load that moves between contacts
+// After these rounds a larger share is enough: what is left is load that moves between contacts
 // on one line, which changes the motion no more.
 constexpr int kManyRounds = 50;
 constexpr double kLooseTolerance = 1e-5;

@@ -55,7 +55,7 @@ class HeightGrid {
     std::uint32_t first = 0, end = 0;
   };
   std::size_t cells() const { return std::size_t{columns_ - 1} * (rows_ - 1); }
-  // Cells of an axis with so many samples that meet [low, high].
+  // Cells of an axis with this number of samples that meet [low, high].
   Span cells_between(double low, double high, std::uint32_t samples) const;
   Vec3 sample(std::uint32_t column, std::uint32_t row) const;
   bool present(std::uint32_t column, std::uint32_t row) const;

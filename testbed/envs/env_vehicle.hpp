@@ -30,7 +30,7 @@ struct Randomisation {
 // How a step is computed.
 struct EnvMethod {
   enum class Kind {
-    kSplit,    // the thrusters' lag exactly, the rest by RK4, in so many substeps (rov/integrators)
+    kSplit,    // the thrusters' lag exactly, the rest by RK4, in substeps (rov/integrators)
     kGuarded,  // as the simulation: as many substeps as the vehicle's state asks for (rov/step)
   } kind = Kind::kSplit;
   int substeps = 2;

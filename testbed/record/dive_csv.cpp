@@ -142,7 +142,7 @@ constexpr const char* kEstimateColumns =
     "z_m,sigma_vx_m_s,sigma_vy_m_s,sigma_vz_m_s,sigma_about_x_deg,sigma_about_y_deg,sigma_about_z_"
     "deg,navigation_error_m";
 
-// Of vehicles with a tether of the scene.
+// Columns of vehicles with a tether of the scene.
 constexpr const char* kTetherColumns =
     ",tether_n,tether_top_n,tether_most_n,tether_m,tether_straight_m,tether_touching,tether_x_n,"
     "tether_y_n,tether_z_n";

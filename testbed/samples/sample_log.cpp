@@ -126,8 +126,8 @@ void SampleLogWriter::sample(const Sample& sample) {
                                  {kKindKey, std::string(name_of(kind))},
                                  {kWayKey, enters(kind) ? kIn : kOut}}});
   }
-  // What came before the first step of a run at the host's pace: no step says yet what the host's
-  // clock showed, so it lies its age before the start.
+  // Before the first step of a run at the host's pace no step says yet what the host's clock
+  // showed: such a sample lies its age before the start.
   const bool unknown = host_ns_ == now_ns_ && header.captured_ns > now_ns_ + kFarAhead_ns;
   const std::int64_t captured_ns =
       unknown ? now_ns_ - std::max<TimeNs>(header.arrived_ns - header.captured_ns, 0)

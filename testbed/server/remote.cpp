@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-// The frame that an array's description names, of at least so many bytes; null: there is none.
+// The frame that an array's description names, of at least this size in bytes; null: there is none.
 const std::vector<std::byte>* frame_of(const Remote::Reply& reply, const json& array,
                                        std::size_t bytes) {
   const auto at = array.find("frame");

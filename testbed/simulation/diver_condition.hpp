@@ -21,8 +21,8 @@ double drawn_tolerance(std::uint64_t seed, std::size_t human);
 void start_condition(const PhysicsHuman& human, PhysicsState& state, const HumanPhysics& start);
 // All abilities, where the scene names no condition or one that does not act.
 Ability ability_of(const PhysicsHuman& human, const PhysicsState& before);
-// Whose gas the diver breathes in this step: the donor's, as the regulator's state in after then
-// says. before: where everybody is.
+// The donor's gas, if the diver breathes it in this step; then the regulator's state in after says
+// so. before: where everybody is.
 std::optional<diver::BorrowedTank> borrow(std::span<const PhysicsHuman> humans, std::size_t index,
                                           const Ability& able, const PhysicsInputs& inputs,
                                           const PhysicsState& before, double dt_s,

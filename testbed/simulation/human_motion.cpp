@@ -12,7 +12,7 @@
 namespace neritic::testbed {
 namespace {
 
-// Beyond a waypoint, so many times nearer than wanted is near enough.
+// Beyond a waypoint, this multiple of the acceptance is near enough.
 constexpr double kPassed = 3.0;
 
 std::size_t waypoint_index(const PhysicsHuman& human, const HumanPhysics& state) {

@@ -238,7 +238,7 @@ void add_swim(const PhysicsWorld& world, const PhysicsHuman& human,
   if (!line.empty()) lines.push_back(std::move(line));
 }
 
-// A way with its stops, of which so many waypoints were reached.
+// A way with its stops, and the number of waypoints that were reached.
 struct Way {
   std::string name;
   Vec3 from_m{0.0}, at_m{0.0};  // its start, and where the traveller is

@@ -22,12 +22,12 @@ struct DiveInput {
   bool cycle_hud = false, toggle_times = false, next_sonar = false;
   bool toggle_pilot = false, quit = false;
   bool toggle_pause = false, step_frame = false;
-  int faster = 0;                                      // so many steps of speed up; negative: down
+  int faster = 0;                                      // steps of speed up; negative: down
   bool save = false, go_back = false, record = false;  // the run's state and recording
   bool toggle_graphs = false, toggle_map = false, next_inset = false, next_lamps = false;
   bool panel_screenshot = false, next_range = false;
   int gain_step = 0;  // of the sonars' pictures
-  int view_step = 0;  // so many viewpoints on; negative: back
+  int view_step = 0;  // viewpoints on; negative: back
 };
 
 // The table that a display is made with.

@@ -51,7 +51,7 @@ void draw_card(ImDrawList& list, double heading_deg, float x, float y, float hal
 
 void draw_rings(ImDrawList& list, const SonarPanel& panel, ImVec2 corner, ImVec2 size) {
   const sonar::Limits& l = panel.grid.limits;
-  // Rings about so many; a smaller first range has no room for its label.
+  // About this number of rings; a smaller first range has no room for its label.
   constexpr double kRings = 6.0, kLeastLabelled = 0.06;
   const auto at = [&](double range_m, double bearing_rad) {
     const Vec2 p = panel.shape.place(range_m, bearing_rad);

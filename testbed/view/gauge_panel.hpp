@@ -23,7 +23,7 @@ struct VehicleGauges {
   };
   std::optional<Battery> battery;
 };
-// Of the vehicle with that number.
+// The gauges of the vehicle with that number.
 VehicleGauges gauges_of(const PhysicsWorld& world, const PhysicsState& state, std::size_t vehicle);
 
 PanelWish gauges_wish(const VehicleGauges& gauges);

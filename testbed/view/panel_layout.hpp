@@ -41,7 +41,7 @@ struct PanelLayout {
   PanelRect status, readout, hint;
   std::vector<PanelRect>
       extras;                   // of each wish, below the status, else at the right; empty: no room
-  std::vector<PanelRect> fans;  // of the first so many; for the others there is no room
+  std::vector<PanelRect> fans;  // of the first ones; for the others there is no room
 };
 
 // status_height: that it wants. fan_aspects: of each sonar's fan; extras come before fans.

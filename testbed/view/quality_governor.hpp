@@ -14,7 +14,7 @@ namespace neritic::testbed {
 
 struct Quality {
   double view_scale = 1.0;       // of the view's width and height in pixels
-  std::uint32_t ping_every = 1;  // each sonar gives one of so many pings that are due
+  std::uint32_t ping_every = 1;  // each sonar gives one of this number of due pings
   std::uint32_t light = 0;       // 0: as the camera says; to kLightLevels - 1, each cheaper
   friend bool operator==(const Quality&, const Quality&) = default;
 };

@@ -71,7 +71,7 @@ class Examples(unittest.TestCase):
                     self.fail("nothing was heard")
 
     def test_messages_by_sound_end_as_was_accepted(self):
-        """Who hears what and when, and what is lost and why: tests/golden/talk.messages.csv (NERITIC_UPDATE_GOLDEN=1 writes it)."""
+        """Each message as heard, when, or as lost, and why: tests/golden/talk.messages.csv (NERITIC_UPDATE_GOLDEN=1 writes it)."""
         said = {1.4: ("diver", b"look", "rov"), 5.0: ("rov", bytes(64), None), 5.1: ("diver", b"busy", "rov"),
                 10.5: ("diver", b"a", None), 10.52: ("rov", b"b", None), 13.0: ("buoy", bytes(range(40)), "diver")}
         rows = ["modem,event,kind,from,to,number,bytes,sent_s,heard_s,snr_db"]

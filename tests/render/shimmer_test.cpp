@@ -38,7 +38,7 @@ WaterColumn thermocline(double thickness_m = 0.5, double slope = 0.15) {
   return column;
 }
 
-// A ray of so many metres through the column, whose layer the waves lift: r'' = (grad n - (grad n .
+// A ray of length_m through the column, whose layer the waves lift: r'' = (grad n - (grad n .
 // t) t) / n by the arc length, in steps of Runge and Kutta's fourth order. Waves: as the view's
 // origin, the eye, has them.
 struct Tracer {

@@ -78,7 +78,7 @@ TEST_F(DivePhysics, AKilledRunLeavesARecordingUpToItsLastSecond) {
   EXPECT_GE(read, kills / 4);
   ASSERT_FALSE(lost_s.empty());
   std::ranges::sort(lost_s);
-  // With its start. What else the machine does may hold up a third of the runs.
+  // With its start. Other work of the machine may hold up a third of the runs.
   const double lost_of_most_s = lost_s[(lost_s.size() - 1) * 2 / 3];
   EXPECT_LT(lost_of_most_s, 1.2);
   fmt::print("{} kills, {} with steps; at most {:.3f} s lost\n", kills, read, lost_s.back());

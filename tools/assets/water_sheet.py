@@ -7,7 +7,7 @@ so does a sheet that shows them. Under each type then stand the two photographs 
 Prints a table, a row a picture: the median of the water's flat regions (sRGB of 8 bits), its hue (degrees) and chroma
 in Oklab, luma at 5 and 95 %, the share of pixels at the gamut's edge (0.85 of the largest chroma that sRGB has at
 their lightness and hue, or more: shaders/shared/gamut.h puts colours of the edge there), and the share with a channel
-at 0 or 255. Of a type also the distance in Oklab to the nearest photograph's water (0.02 is just noticeable).
+at 0 or 255. A type has also the distance in Oklab to the nearest photograph's water (0.02 is just noticeable).
 """
 import sys
 from pathlib import Path

@@ -193,7 +193,7 @@ class Maker:
 
 
 def some_of(one, names, each, tries=4):
-    """(first parts of what one(name) gives, classes [n]): so many of each class, fewer where they cannot be seen."""
+    """(first parts of what one(name) gives, classes [n]): this number of each class, fewer where they cannot be seen."""
     found, classes = [], []
     for index, name in enumerate(names):
         made = 0

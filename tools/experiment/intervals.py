@@ -59,7 +59,7 @@ def runs_to_tell(values, ratio=1.1, power=0.8):
 
 
 def power_of(values, runs, ratio=1.1):
-    """The power of that test with so many runs a group."""
+    """The power of that test with `runs` runs a group."""
     n = len(values)
     mean = sum(values) / n
     variance = sum((v - mean) ** 2 for v in values) / (n - 1)
@@ -69,7 +69,7 @@ def power_of(values, runs, ratio=1.1):
 
 
 def power_by_draws(values, runs, ratio=1.1, draws=2000):
-    """The same without the normal approximation: groups of so many runs are drawn from the values, one of them longer by the
+    """The same without the normal approximation: groups of `runs` runs are drawn from the values, one of them longer by the
     ratio, and Welch's test (1947) is made on each pair; from 20 runs on its limit is near the normal one. Counter-based draws."""
     import numpy as np
     rng = np.random.Generator(np.random.Philox(key=runs))

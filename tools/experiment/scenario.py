@@ -1,6 +1,6 @@
 """Scenario files: what an experiment is, as TOML. README.md lists the keys.
 
-A scenario becomes a list of runs: every combination of the factors' levels, each with the same seeds. What varies
+A scenario becomes a list of runs: every combination of the factors' levels, each with the same seeds. A varied setting
 is drawn by (seed, key) alone, so a run is the same whatever runs beside it.
 """
 import copy

@@ -50,7 +50,7 @@ def figures(scenario, results, style):
     _distances(style.area(fig, 70, 60, 870, 320), shown, style)
     _shares(style.area(fig, 70, 400, 450, 590), shown, style)
     _power(style.area(fig, 520, 400, 870, 590), shown, _paired(results), style)
-    yield "shark.png", "The ROV's distance from the line over time, times to block, and the power of so many runs", fig
+    yield "shark.png", "The ROV's distance from the line over time, times to block, and the power over the number of runs", fig
 
 
 def _times(runs):

@@ -2,7 +2,7 @@
 README.md lists its keys.
 
 The controller is a Python file with a class Controller: __init__(self, world, settings, seed) and
-act(self, observations, stage), called control_hz times a second. What act returns, a dict of numbers, formulas may name.
+act(self, observations, stage), called control_hz times a second. Formulas may name the numbers of the dict that act returns.
 A player, a class Player of the same form, plays people and props by rules, so that controllers can be compared: its act has
 a third argument, what the controller told last, and is called first; the controller has what it tells as self.told, and the
 player itself as self.player.
@@ -20,7 +20,7 @@ from task_file import TaskFile
 
 
 class Moment:
-    """What formulas see: the truth of one instant, and numbers by name."""
+    """The inputs of formulas: the truth of one instant, and numbers by name."""
 
     def __init__(self, world, fixed, numbers):
         self._world, self._fixed, self._numbers, self._truths = world, fixed, numbers, {}

@@ -62,7 +62,7 @@ Status show_frame(OverlaySession& overlay, const xr::DisplayFrame& frame, DiveHu
   return drawn;
 }
 
-// Until go_on says no, the runtime quits it, or so many frames were seen (0: all).
+// Until go_on says no, the runtime quits it, or this number of frames was seen (0: all).
 Status show_frames(OverlaySession& overlay, DiveHud& hud, std::uint64_t frames,
                    const std::function<Result<bool>()>& go_on) {
   for (std::uint64_t shown = 0; frames == 0 || shown < frames;) {

@@ -1,5 +1,5 @@
 // A recording that is run again: which scene it is of, and the scene that is shown of it, which may
-// have other sensors, other water, another place. What --replay means to `dive` and `render`.
+// have other sensors, other water, another place: --replay of `dive` and `render`.
 #pragma once
 
 #include <optional>

@@ -153,7 +153,7 @@ std::string times_words(const Times& t) {
                      t.most_ms);
 }
 
-// Of each picture; a frame is from the end of the picture before to its own.
+// Times of each picture; a frame is from the end of the picture before to its own.
 struct Latencies {
   std::vector<double> frame_ms, drawing_ms;
   std::vector<double> newest_ms;  // from its newest packet to its end

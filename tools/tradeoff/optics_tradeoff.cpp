@@ -127,7 +127,7 @@ Vec3 refracted(const Vec3& travel, const Vec3& normal) {
          (ratio * cosine - std::sqrt(1.0 - ratio * ratio * (1.0 - cosine * cosine))) * normal;
 }
 
-// Light on the level over that under flat water, by so many rays a side of the tile.
+// Light on the level over that under flat water, by this number of rays a side of the tile.
 std::vector<double> caustics_truth(const shared::CausticsParams& params, int rays) {
   std::vector<double> light(kBins * kBins, 0.0);
   const double depth_m = shared::kCausticFirst_m * std::pow(shared::kCausticStep, kLevel);

@@ -45,7 +45,7 @@ struct Flight {
   rov::State step(const rov::State& state, const rov::Inputs& held, double time_s, double dt_s,
                   const testbed::StepMethod& method) const;
 
-  // Flies it in so many steps a hold; seen(hold, state) after each hold.
+  // Flies it in these steps a hold; seen(hold, state) after each hold.
   template <class Seen>
   void fly(int count, const testbed::StepMethod& method, const Seen& seen) const {
     rov::State state = start;

@@ -229,8 +229,9 @@ Result<bool> write_tether_tradeoff(const std::filesystem::path& folder,
       "line. A hanging chain of 10 m: the error of its slowest period.\n\n"
       "| rig | segments | steps a second | farthest node, m | pull or period, % | us of one core a "
       "second |\n|---|---|---|---|---|---|\n";
-  Page page{"A tether of segments: error against cost",
-            {"Of the pull at the end, or the period; by the number of segments. One core."}};
+  Page page{
+      "A tether of segments: error against cost",
+      {"Error of the pull at the end, or of the period; by the number of segments. One core."}};
   for (const auto& [rig, words] : kTetherRigs) {
     Panel panel{words, {"\u00b5s of one core a second"}, {"error, %"}};
     Series series{"240 steps a second", {}, {}}, others{"other rates, 16 segments", {}, {}};

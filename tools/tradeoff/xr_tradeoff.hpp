@@ -46,7 +46,7 @@ struct XrTradeoff {
 };
 Result<XrTradeoff> run_xr_tradeoff(const XrTradeoffOptions& options);
 
-// The part of a picture's error that the eye weighs at so many degrees from where it looks: acuity
+// The part of a picture's error that the eye weighs at an angle from where it looks: acuity
 // falls as 1 / (1 + e / 2.3 degrees) (Levi, Klein and Aitsebaomo 1985, Vision Res. 25, 963: E2 of
 // resolution 2.3 to 3), squared for an area.
 double acuity_weight(double eccentricity_deg);

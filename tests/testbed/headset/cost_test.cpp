@@ -12,7 +12,7 @@ namespace neritic::testbed {
 namespace {
 
 constexpr double kDisplay_hz = 90.0;
-// The instruments are drawn in one of so many frames.
+// The instruments are drawn in one of this number of frames.
 constexpr std::size_t kHudEvery = static_cast<std::size_t>(kDisplay_hz / kHudRate_hz);
 
 // The yardstick's time on one quiet core of an AMD EPYC.

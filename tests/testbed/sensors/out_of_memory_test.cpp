@@ -15,7 +15,7 @@ namespace {
 using ::testing::HasSubstr;
 using OutOfMemory = test::GpuTest;
 
-// The driver's answer to more than so many bytes at once, while it lives.
+// The driver's answer to more than this number of bytes at once, while it lives.
 class LittleMemory {
  public:
   explicit LittleMemory(VkDeviceSize most_bytes) {

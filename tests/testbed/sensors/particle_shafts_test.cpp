@@ -60,7 +60,7 @@ ImageF32 picture(gpu::Device& device, const Asked& asked) {
   return result.ok() ? std::move(result->cameras[0].eyes[0].linear) : ImageF32{};
 }
 
-// What snow adds to each pixel, left of the roof's edge and right of it.
+// Light that snow adds to each pixel, left of the roof's edge and right of it.
 struct Added {
   double left = 0.0, right = 0.0;
 };
@@ -81,7 +81,7 @@ TEST_F(ParticleShaftsGpu, SnowInARoofsShadowLosesTheBeamAndNoOther) {
   const Added lit = added(device(), {.roof = true, .shafts = true}),
               plain = added(device(), {.roof = true});
   EXPECT_NEAR(lit.right / plain.right, 1.0, 0.02);
-  // What is left is the sky's: with the sun in the zenith and a level sight, a flake sends
+  // The rest is the sky's: with the sun in the zenith and a level sight, a flake sends
   // on (0.33 + 0.67 / 2) of the beam over the beam's cosine, and 1.3 times the same of the sky.
   const auto lighting = render::make_lighting(scene_of({}), {}, Vec3(0.0, -3.0, 0.0), {}, false);
   ASSERT_TRUE(lighting.ok()) << lighting.error().message;

@@ -9,7 +9,7 @@ struct Collisions {
   std::vector<CollisionReading> of_vehicle[2], of_diver;
 };
 
-// All collisions of so many seconds; each stream without gaps, a sample a step that touched.
+// All collisions of these seconds; each stream without gaps, a sample a step that touched.
 Collisions collisions_of(TestDive& dive, double seconds) {
   const StreamTable& table = dive.world->streams();
   OutputSamples outputs(*dive.world, OutputSamples::all(*dive.world));

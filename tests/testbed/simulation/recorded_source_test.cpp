@@ -15,7 +15,7 @@ BodyJoints posture(std::uint64_t step) {
   return body;
 }
 
-// A suit at 240 Hz and controllers at 10 Hz, for so many steps.
+// A suit at 240 Hz and controllers at 10 Hz, for these steps.
 SampleLog recorded_dive(std::uint64_t steps) {
   TestDive dive = dive_of(hover_text("body = \"suit\", buttons = \"controllers\""));
   Device suit(dive, "suit", "diver/joints"), controllers(dive, "controllers", "diver/buttons");

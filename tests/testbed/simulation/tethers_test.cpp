@@ -50,7 +50,7 @@ TEST(SceneTether, ItHangsAsACatenaryAndTheVehicleHoldsAgainstItsPull) {
   const TetherReading told = tether_reading(tether(dive));
   EXPECT_NEAR(told.pull_n.z, across_n, 0.06 * across_n);  // towards its top, which is south
   EXPECT_NEAR(told.pull_n.x, 0.0, 0.05);
-  // What hangs at the vehicle, from the lowest point on, pulls it down.
+  // The line that hangs at the vehicle, from the lowest point on, pulls it down.
   const double lowest_m = 10.0 + low * std::atanh(2.0 / 24.0);
   EXPECT_NEAR(told.pull_n.y, -0.5 * low * std::sinh((20.0 - lowest_m) / low), 0.4);
   EXPECT_NEAR(told.tension_n, glm::length(told.pull_n), 0.06 * told.tension_n);

@@ -62,7 +62,7 @@ class Oracle {
           {t, glm::min(t[0], glm::min(t[1], t[2])), glm::max(t[0], glm::max(t[1], t[2]))});
     EXPECT_GT(triangles_.size(), 10000u);
   }
-  // The boxes made smaller by so much all round.
+  // The boxes made smaller by this margin all round.
   std::size_t inside(const sim::BodyShape& shape, const Pose& world_from_body,
                      double smaller_m) const {
     std::size_t count = 0;

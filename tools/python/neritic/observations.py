@@ -1,4 +1,4 @@
-"""What a world gives: streams, readings, images, the truth, messages."""
+"""Everything that a world gives: streams, readings, images, the truth, messages."""
 
 from __future__ import annotations
 

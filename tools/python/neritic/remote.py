@@ -315,7 +315,7 @@ class Core:
 
 class RemoteWorld(World):
     """A world on a server. In lock-step the first client that ticks holds the clock; in real time the
-    world goes on by itself and a tick waits for so many steps. `record` takes a plain name: the file is
+    world goes on by itself and a tick waits for n steps. `record` takes a plain name: the file is
     the server's."""
 
     _core: Core
@@ -339,7 +339,7 @@ class RemoteWorld(World):
         self._core.take_clock(False)
 
     def wait(self, steps: int = 1, most: float = 60.0) -> None:
-        """Waits until so many steps of others are done, at most so many seconds."""
+        """Waits until `steps` steps of others are done, at most `most` seconds."""
         self._core.wait(steps, most)
 
     def poses(self) -> dict[str, Truth]:

@@ -147,7 +147,7 @@ def vector(task: str, num_envs: int = 1, *, vehicle: Union[None, str, os.PathLik
     shark   keep between a diver and a shark
 
     vehicle: its file; None: a BlueROV2 Heavy. step_s, max_steps: of an episode. method, substeps: "split"
-    computes the thrusters' lag exactly and the rest by RK4 in so many substeps; "guarded" is what a scene's
+    computes the thrusters' lag exactly and the rest by RK4 in `substeps` substeps; "guarded" is what a scene's
     simulation does. `python3 -m neritic.tradeoff` shows error over cost. thrust_table: commands in whole
     microseconds, as in a scene. randomise: True (RANDOMISED), False, or a dict of some of its values.
     control: "thrusters" or "wrench". autoreset: "next_step" or "same_step". threads: 0 for all cores."""
