@@ -120,7 +120,7 @@ def check(path):
     for i in d.get("images", []):
         v = d["bufferViews"][i["bufferView"]]
         size = Image.open(io.BytesIO(m.bin[v["byteOffset"] : v["byteOffset"] + v["byteLength"]])).size
-        if any(s & (s - 1) or s > 1024 for s in size):
+        if any(s & (s - 1) or s > 2048 for s in size) or size[0] * size[1] > 2 << 20:
             bad.append(f"image {i['name']}: {size}")
     joints = [d["nodes"][j]["name"] for j in d["skins"][0]["joints"]] if "skins" in d else []
     if path.stem == "diver" and set(joints) != SEGMENTS | GEAR:

@@ -93,10 +93,10 @@ def rubber(n=512, size=0.3):
     """Moulded rubber and paint with slight wear; tinted by vertex colour."""
     a, f = N.spectral(n, 12, 2.2, 2, 24), N.spectral(n, 13, 0.4, 60)
     scratch = N.smooth(2.0, 3.0, N.spectral(n, 14, 1.0, 6, stretch=(1, 12)))
-    tone = 0.90 + 0.04 * a + 0.02 * f - 0.15 * scratch
-    rough = 0.52 + 0.08 * a + 0.2 * scratch
+    tone = 0.90 + 0.015 * a + 0.02 * f - 0.15 * scratch
+    rough = 0.52 + 0.05 * a + 0.2 * scratch
     return (
         np.clip(tone[..., None] * np.ones(3), 0, 1),
         N.rough_metal(np.clip(rough, 0.3, 0.9)),
-        N.normal_map(0.00003 * f + 0.00014 * a, size),
+        N.normal_map(0.00003 * f + 0.00004 * a, size),
     )

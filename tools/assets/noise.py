@@ -33,6 +33,35 @@ def cells(n, count, seed, m=None):
     return d1, d2, who
 
 
+def bumps(n, tile_m, count, seed, least_m, most_m, where=None, ragged=None):
+    """Stones, shells or clumps on a tile: cover (0..1), height (m) and a random tone (0..1) of each, [n, n].
+
+    Sizes fall off towards the largest; where (a field, about 0..1) keeps them in drifts, ragged (in radii) frays edges.
+    """
+    rng = np.random.default_rng(seed)
+    cover, dome, tone = np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n))
+    for _ in range(count):
+        at, r = rng.random(2) * n, (least_m * (most_m / least_m) ** (rng.random() ** 2.2)) / tile_m * n
+        squash, turn, shade = 0.55 + 0.4 * rng.random(), rng.random() * np.pi, rng.random()
+        lumps, kept = rng.normal(0, 0.09, 3), rng.normal(0.5, 0.25)
+        if where is not None and where[int(at[0]), int(at[1])] < kept:
+            continue
+        w = int(r * 1.6) + 2
+        y, x = np.mgrid[-w:w + 1, -w:w + 1].astype(float)
+        u, v = x * np.cos(turn) + y * np.sin(turn), (y * np.cos(turn) - x * np.sin(turn)) / squash
+        angle = np.arctan2(v, u)
+        d = np.hypot(u, v) / r * (1 + sum(lumps[k] * np.cos((k + 2) * angle + 6 * shade) for k in range(3)))
+        box = np.ix_((int(at[0]) + np.arange(-w, w + 1)) % n, (int(at[1]) + np.arange(-w, w + 1)) % n)
+        if ragged is not None:
+            d = d + ragged[box]
+        on = smooth(1.0 + 0.7 / r, 1.0 - 0.7 / r, d)
+        more = on > cover[box]
+        cover[box] = np.maximum(cover[box], on)
+        dome[box] = np.where(more, np.sqrt(np.clip(1 - d * d, 0, 1)) * r / n * tile_m * 0.6, dome[box])
+        tone[box] = np.where(more, shade, tone[box])
+    return cover, dome, tone
+
+
 def smooth(lo, hi, x):
     t = np.clip((np.asarray(x, float) - lo) / (hi - lo), 0, 1)
     return t * t * (3 - 2 * t)

@@ -203,7 +203,7 @@ def barrel_sponge():
         rings.append(np.column_stack([rr * np.cos(ang), np.full(n, y), rr * np.sin(ang)]))
     part = loft(rings, (True, True))
     dark = lambda p: np.where((np.hypot(p[:, 0], p[:, 2]) < 0.245) & (p[:, 1] > 0.2), 0.0, N.smooth(-0.1, 0.5, p[:, 1]))
-    return box_uv(paint(part, (0.24, 0.13, 0.11), (0.62, 0.38, 0.32), dark, 23, 0.25, 50), 0.3)
+    return box_uv(paint(part, (0.10, 0.045, 0.036), (0.40, 0.20, 0.15), dark, 23, 0.40, 50), 0.3)
 
 
 def tube_sponges():

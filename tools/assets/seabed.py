@@ -50,11 +50,11 @@ def tint(pos, y):
         N.fbm3(pos * [1, 0, 1], 22, 1 / 5, 3),
         N.fbm3(pos * [1, 0, 1], 23, 1 / 1.6, 2),
     )
-    col = np.tile([0.90, 0.88, 0.85], (len(pos), 1))
-    col = N.mix(col, np.array([0.66, 0.62, 0.55]), N.smooth(-0.1, 0.8, big))
-    col = N.mix(col, np.array([0.62, 0.66, 0.50]), 0.65 * N.smooth(0.15, 0.75, mid + 0.3 * fine))
-    col = N.mix(col, np.array([1.0, 0.98, 0.94]), 0.7 * N.smooth(0.0, 0.5, y - 0.05 - 0.3 * big))
-    col = col * (1 + 0.06 * fine + 0.05 * mid)[:, None]
+    col = np.tile([0.74, 0.72, 0.68], (len(pos), 1))
+    col = N.mix(col, np.array([0.46, 0.43, 0.37]), N.smooth(-0.25, 0.6, big))
+    col = N.mix(col, np.array([0.36, 0.38, 0.28]), 0.8 * N.smooth(0.10, 0.55, mid + 0.45 * fine))
+    col = N.mix(col, np.array([0.92, 0.90, 0.86]), 0.7 * N.smooth(0.0, 0.5, y - 0.05 - 0.3 * big))
+    col = col * (1 + 0.10 * fine + 0.08 * mid)[:, None]
     return np.column_stack([np.clip(col, 0, 1), np.ones(len(col))])
 
 
@@ -92,6 +92,26 @@ def ripples(n, waves, seed, spread=0.20, angle=0.16):
     return np.fft.ifft2(np.fft.fft2(rng.standard_normal((n, n))) * band)
 
 
+def tracks(n, count, seed):
+    """Furrows that snails and urchins leave: how deep (-1: the furrow, to 0.5: its banks), [n, n]."""
+    rng = np.random.default_rng(seed)
+    out = np.zeros((n, n))
+    for _ in range(count):
+        at, way, r = rng.random(2) * n, rng.random() * 2 * np.pi, (0.006 + 0.008 * rng.random()) / TILE * n
+        turn = 0.0
+        line = np.full((n, n), 9.0)
+        for _ in range(int(rng.uniform(0.5, 1.8) / TILE * n / 2)):
+            turn = 0.92 * turn + rng.normal(0, 0.035)
+            way += turn
+            at = at + 2 * np.array([np.sin(way), np.cos(way)])
+            w = int(3 * r) + 1
+            y, x = np.mgrid[-w:w + 1, -w:w + 1]
+            box = np.ix_((int(at[0]) + np.arange(-w, w + 1)) % n, (int(at[1]) + np.arange(-w, w + 1)) % n)
+            line[box] = np.minimum(line[box], np.hypot(y - at[0] % 1, x - at[1] % 1) / r)
+        out += -np.exp(-line**2) + 0.5 * np.exp(-((line - 1.6) / 0.5) ** 2)
+    return np.clip(out, -1, 0.6)
+
+
 def sand(n=1024):
     zf = ripples(n, 15, 5, 0.30, 0.42)  # they fork, turn and change their spacing
     amp = np.abs(zf) / np.abs(zf).mean()
@@ -99,19 +119,28 @@ def sand(n=1024):
     crest = np.cos(ph + 0.45 * np.sin(ph))
     crest = np.where(crest > 0, np.maximum(crest, 0) ** 1.25, crest * 0.8)
     crest = N.blur(crest, 2.0) * N.smooth(0.15, 1.1, amp)
-    crest = crest * (0.15 + 0.85 * N.smooth(-1.1, 0.7, N.spectral(n, 9, 3.0, 1, 5)))  # and die out in patches
+    crest = crest * (0.10 + 0.75 * N.smooth(-0.9, 0.9, N.spectral(n, 9, 3.0, 1, 5)))  # and die out in patches
     small = np.cos(np.angle(ripples(n, 43, 8, 0.25, 0.5)))
     soft, mid, f = N.spectral(n, 2, 2.2, 1.5, 30), N.spectral(n, 3, 1.0, 20, 200), N.spectral(n, 4, 0.0, 150)
-    col = N.mix(N.flat(n, (0.62, 0.55, 0.45)), (0.77, 0.71, 0.60), N.smooth(-1.1, 1.1, crest + 0.30 * mid + 0.25 * soft))
-    col *= (1 + 0.035 * soft + 0.04 * mid + 0.055 * f)[..., None]
-    grain = N.smooth(2.3, 3.2, f)
-    col = N.mix(col, (0.93, 0.90, 0.84), 0.7 * grain)
-    col = N.mix(col, (0.25, 0.22, 0.19), 0.6 * N.smooth(2.3, 3.2, -f + 0.3 * (crest < -0.2)))
-    d1, _, who = N.cells(n, 130, 6)
-    size = np.random.default_rng(2).random(130)[who]
-    shell = N.smooth(0.0052, 0.0035, d1 / (0.5 + size)) * (size > 0.35)
-    col = N.mix(col, (0.88, 0.85, 0.78), 0.8 * shell)
-    h = 0.0095 * crest + 0.0008 * small + 0.006 * soft + 0.0010 * mid + 0.00035 * f + 0.003 * shell
+    lumps = N.spectral(n, 7, 1.6, 5, 60)
+    col = N.mix(N.flat(n, (0.56, 0.49, 0.39)), (0.76, 0.70, 0.59), N.smooth(-1.1, 1.1, 0.8 * crest + 0.30 * mid + 0.35 * soft))
+    col *= (1 + 0.05 * soft + 0.05 * lumps + 0.05 * mid + 0.075 * f)[..., None]
+    litter = N.smooth(0.5, 2.0, -crest + 0.8 * N.spectral(n, 10, 2.2, 2, 40) + 0.35 * f)  # dark, in the troughs
+    col = N.mix(col, (0.27, 0.23, 0.16), 0.62 * litter)
+    col = N.mix(col, (0.93, 0.90, 0.84), 0.7 * N.smooth(2.1, 3.0, f))
+    col = N.mix(col, (0.20, 0.17, 0.14), 0.7 * N.smooth(2.0, 2.9, -f + 0.3 * (crest < -0.2)))
+    drift = N.smooth(-0.4, 1.6, N.spectral(n, 11, 2.4, 1, 12) - 0.5 * crest)
+    shell, shell_dome, tone = N.bumps(n, TILE, 1300, 12, 0.004, 0.016, drift)
+    stone, stone_dome, grey = N.bumps(n, TILE, 700, 13, 0.006, 0.045, drift)
+    cast, cast_dome, _ = N.bumps(n, TILE, 46, 14, 0.03, 0.07)
+    furrow = tracks(n, 7, 15)
+    col *= (1 + 0.10 * furrow)[..., None]
+    col = N.mix(col, N.mix(N.flat(n, (0.90, 0.87, 0.80)), (0.58, 0.50, 0.42), tone), 0.85 * shell)
+    shade_of = lambda cover, px: np.clip(N.blur(cover, px) - cover, 0, 1)  # sand beside a stone sees less of the sky
+    col *= (1 - 0.75 * shade_of(stone, 3.0) - 0.5 * shade_of(shell, 1.5))[..., None]
+    col = N.mix(col, N.mix(N.flat(n, (0.27, 0.25, 0.22)), (0.66, 0.61, 0.54), grey**1.5) * (1 + 0.12 * f + 0.10 * mid)[..., None], 0.92 * stone)
+    h = 0.0070 * crest + 0.0008 * small + 0.006 * soft + 0.0016 * lumps + 0.0010 * mid + 0.00035 * f
+    h += N.blur(cast_dome, 2.0) * 0.45 * (1 + 0.3 * mid * cast) + 0.006 * furrow + stone_dome + 0.8 * shell_dome
     rough = np.clip(0.90 + 0.04 * mid - 0.15 * shell, 0, 1)
     return np.clip(col, 0, 1), N.rough_metal(rough), N.normal_map(h, TILE)
 

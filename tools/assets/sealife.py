@@ -251,10 +251,11 @@ def fish_texture(n=128, m=256):
     v = ((np.arange(n) + 0.5) / n)[:, None] * np.ones((1, m))
     u = ((np.arange(m) + 0.5) / m)[None, :] * np.ones((n, 1))
     f = N.spectral(n, 3, 0.6, 10, m=m)
-    col = N.mix(N.flat(n, (0.16, 0.30, 0.42), m), (0.86, 0.88, 0.86), N.smooth(0.30, 0.62, v))
-    col = N.mix(col, (0.92, 0.74, 0.14), 0.85 * N.smooth(0.055, 0.03, np.abs(v - 0.40)))
-    col = N.mix(col, (0.85, 0.70, 0.20), 0.8 * N.smooth(0.84, 0.92, u))
-    col *= (1 + 0.05 * f)[..., None]
+    col = N.mix(N.flat(n, (0.12, 0.24, 0.35), m), (0.74, 0.77, 0.76), N.smooth(0.26, 0.66, v))
+    col = N.mix(col, (0.72, 0.58, 0.12), 0.8 * N.smooth(0.055, 0.03, np.abs(v - 0.40)))
+    col = N.mix(col, (0.62, 0.50, 0.15), 0.8 * N.smooth(0.84, 0.92, u))
+    scale = np.cos(m * 0.9 * u + 1.6 * np.cos(n * 0.9 * v)) * N.smooth(0.16, 0.24, u) * N.smooth(0.86, 0.78, u)  # rows of scales
+    col *= (1 + 0.05 * f + 0.10 * scale - 0.35 * N.smooth(0.72, 0.98, v))[..., None]
     r = np.hypot((u - 0.115) * 0.25, (v - 0.38) * 0.075)
     col = N.mix(col, (0.9, 0.88, 0.80), N.smooth(0.0056, 0.0046, r))
     col = N.mix(col, (0.02, 0.02, 0.02), N.smooth(0.0036, 0.0028, r))

@@ -5,6 +5,7 @@ import noise as N
 
 PAINT, RUST, DARK, ORANGE = (0.38, 0.40, 0.40), (0.44, 0.25, 0.15), (0.27, 0.17, 0.12), (0.60, 0.35, 0.17)
 CRUST, ALGAE, SILT = (0.60, 0.58, 0.50), (0.33, 0.38, 0.22), (0.70, 0.64, 0.52)
+OYSTER, SPONGE, MUSSEL = (0.84, 0.80, 0.72), (0.66, 0.30, 0.14), (0.19, 0.17, 0.14)
 
 
 def corroded(n, seed, paint=0.5):
@@ -29,16 +30,45 @@ def corroded(n, seed, paint=0.5):
     return col, np.clip(rough, 0.5, 1), height + grow * 0.25
 
 
-def hull(n=1024, length=8.0, girth=7.0):
-    """U runs 8 m along the boat and tiles; V runs from deck edge (0) to keel (1)."""
+def twice(image):
+    """An image of twice the size, smooth, as tiles repeat."""
+    big = image.repeat(2, 0).repeat(2, 1)
+    return sum(np.roll(big, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1)) / 9
+
+
+def growth(n, metres, col, height, where):
+    """What has settled on the plates, in clumps: oysters and barnacles, mussels and hydroids, sponges."""
+    darker = lambda cover, px: 1 - 0.85 * np.clip(N.blur(cover, px) - cover, 0, 1)  # between clumps little light comes
+    mottle = 0.16 * N.spectral(n, 85, 1.0, 60) + 0.14 * twice(N.spectral(n // 2, 86, 1.8, 12, 120))
+    for count, seed, least, most, low, high, field in (
+        (7000, 81, 0.010, 0.055, MUSSEL, (0.36, 0.32, 0.23), where - 0.15),
+        (9000, 82, 0.007, 0.045, (0.54, 0.50, 0.42), OYSTER, where + 0.15),
+        (420, 83, 0.03, 0.11, (0.40, 0.15, 0.09), SPONGE, where - 0.1),
+        (500, 84, 0.03, 0.10, (0.30, 0.31, 0.17), (0.56, 0.52, 0.34), where - 0.05),
+    ):
+        cover, dome, tone = N.bumps(n, metres, count, seed, least, most, field, 1.3 * mottle)
+        col = col * darker(cover, 4.0)[..., None]
+        clump = N.mix(N.flat(n, low), high, tone) * ((0.62 + 0.38 * np.clip(dome / 0.015, 0, 1)) * (1 + mottle))[..., None]
+        col = N.mix(col, clump, 0.85 * cover)
+        height = height + (1.1 * dome + 0.004 * mottle) * cover
+    return col, height
+
+
+def hull(n=2048, length=8.0, girth=7.0):
+    """U runs 8 m along the boat and tiles; V runs from deck edge (0) to keel (1). The colour has n columns and n / 2 rows, normals n / 2,
+    roughness n / 4."""
     v = (np.arange(n) + 0.5)[:, None] / n * np.ones((1, n))
     u = (np.arange(n) + 0.5)[None, :] / n * length * np.ones((n, 1))
-    col, rough, h = corroded(n, 11, 0.55)
-    height = h * 0.010
+    noise = lambda *what, **more: twice(N.spectral(n // 2, *what, **more))
+    grain = N.spectral(n, 33, 0.5, 150)
+    col, rough, h = (twice(image) for image in corroded(n // 2, 11, 0.55))
+    col = N.mix(col, col * col * 1.5, 0.3)  # bare plates are darker than what grows on them
+    col *= (1 + 0.10 * grain)[..., None]
+    height = h * 0.010 + 0.0006 * grain
     # streaks: noise stretched down the side
-    streak = N.spectral(n, 31, 1.5, 3, stretch=(7, 1)) + 0.3 * N.spectral(n, 32, 1, 30)
+    streak = noise(31, 1.5, 3, stretch=(7, 1)) + 0.3 * noise(32, 1, 30)
     col = N.mix(col, (0.50, 0.28, 0.14), 0.62 * N.smooth(0.4, 1.7, streak) * N.smooth(0.02, 0.2, v))
-    col = N.mix(col, (0.20, 0.16, 0.13), 0.6 * N.smooth(0.5, 1.9, -streak) * N.smooth(0.02, 0.2, v))
+    col = N.mix(col, (0.14, 0.11, 0.09), 0.7 * N.smooth(0.4, 1.7, -streak) * N.smooth(0.02, 0.2, v))
     # plates: seams along, butts across (staggered), rivets beside them
     rows = [0.0, 0.105, 0.26, 0.42, 0.58, 0.74, 0.89, 1.0]
     seam = np.zeros((n, n))
@@ -48,44 +78,56 @@ def hull(n=1024, length=8.0, girth=7.0):
         off = 1.0 * (k % 2)
         du = np.abs((u - off + 1) % 2 - 1)
         dv = np.minimum(np.abs(v - rows[k]), np.abs(v - rows[k + 1])) * girth
-        seam = np.maximum(seam, band * np.maximum(N.smooth(0.016, 0.004, du), N.smooth(0.016, 0.004, dv)))
+        seam = np.maximum(seam, band * np.maximum(N.smooth(0.012, 0.004, du), N.smooth(0.012, 0.004, dv)))
         ru = np.abs((u % 0.10) - 0.05)
         rv = np.abs((v * girth % 0.10) - 0.05)
-        rivet = np.maximum(rivet, band * N.smooth(0.022, 0.012, np.hypot(ru, dv - 0.045)))
-        rivet = np.maximum(rivet, band * N.smooth(0.022, 0.012, np.hypot(rv, du - 0.045)))
+        rivet = np.maximum(rivet, band * N.smooth(0.019, 0.012, np.hypot(ru, dv - 0.045)))
+        rivet = np.maximum(rivet, band * N.smooth(0.019, 0.012, np.hypot(rv, du - 0.045)))
         dent = np.random.default_rng(k).normal(0, 0.5, 8)
-        col = col * (1 + 0.07 * band * dent[((u - off) // 2).astype(int) % 4])[..., None]
+        col = col * (1 + 0.10 * band * dent[((u - off) // 2).astype(int) % 4])[..., None]
     height += rivet * 0.008 - seam * 0.010
-    col = N.mix(col, (0.17, 0.11, 0.07), seam * 0.75)
+    col = N.mix(col, (0.13, 0.08, 0.05), seam * 0.75)
     col = N.mix(col, (0.36, 0.20, 0.11), rivet * 0.45)
-    # limber holes of the casing
-    for vc, hh, step, w in ((0.034, 0.085, 0.8, 0.52), (0.078, 0.060, 0.8, 0.40)):
-        uu = np.abs((u + (0 if vc < 0.05 else 0.4)) % step - step / 2)
-        dv = np.abs(v - vc) * girth
-        q = np.hypot(np.maximum(uu - (w / 2 - hh), 0), dv)
-        hole = N.smooth(hh + 0.012, hh - 0.012, q)
-        lip = N.smooth(hh + 0.05, hh + 0.015, q) - hole
-        col = N.mix(col, (0.018, 0.02, 0.02), hole)
-        col = N.mix(col, ORANGE, np.clip(lip, 0, 1) * 0.4)
-        rough = rough * (1 - hole) + 0.95 * hole
-        height -= hole * 0.03
     # weed hangs at the deck edge, silt lies on the shoulder and at the foot
-    patch = N.spectral(n, 41, 2.3, 2) + 0.25 * N.spectral(n, 42, 0.8, 20)
+    patch = noise(41, 2.3, 2) + 0.25 * noise(42, 0.8, 20)
     weed = N.smooth(0.2, 1.2, patch) * N.smooth(0.5, 0.1, v)
     col = N.mix(col, (0.30, 0.36, 0.19), weed * 0.45)
     silt = N.smooth(
-        -0.9,
+        -0.7,
         2.2,
-        N.spectral(n, 43, 2.2, 2)
-        + 0.25 * N.spectral(n, 44, 0.9, 30)
-        + 1.3 * N.smooth(0.30, 0.13, v) * N.smooth(0.095, 0.12, v)
+        noise(43, 2.2, 2)
+        + 0.25 * noise(44, 0.9, 30)
+        + 0.25 * grain
+        + 1.2 * N.smooth(0.30, 0.13, v) * N.smooth(0.095, 0.12, v)
         + 1.9 * N.smooth(0.56, 0.80, v)
-        - 1.0,
+        - 0.9,
     )
     col = N.mix(col, SILT, silt * 0.75)
     height = height * (1 - 0.5 * silt)
     rough = np.clip(rough + 0.12 * silt, 0, 1)
-    return np.clip(col, 0, 1), N.rough_metal(rough, 0.15 * (1 - silt))[::2, ::2], N.normal_map(height, length, girth)
+    settled = N.smooth(-0.5, 1.7, noise(45, 2.3, 2, 60) + 0.5 * N.smooth(0.75, 0.25, v))
+    col, height = growth(n, length, col, height, settled)
+    # limber holes of the casing: openings into the dark, behind a lip of plate, with edges that growth narrows
+    ragged = 0.007 * noise(46, 2.4, 16, 300)
+    for vc, hh, step, w in ((0.034, 0.085, 0.8, 0.52), (0.078, 0.060, 0.8, 0.40)):
+        uu = np.abs((u + (0 if vc < 0.05 else 0.4)) % step - step / 2)
+        down = (v - vc) * girth
+        q = np.hypot(np.maximum(uu - (w / 2 - hh), 0), down) + ragged
+        hole = N.smooth(hh + 0.005, hh - 0.005, q)
+        rim = N.smooth(hh + 0.040, hh + 0.012, q) - hole
+        col = N.mix(col, (0.34, 0.24, 0.16), np.clip(rim, 0, 1) * 0.5)
+        run = N.smooth(w / 2, w / 2 - 0.15, uu) * N.smooth(hh, hh + 0.05, down) * N.smooth(hh + 0.5, hh + 0.1, down)
+        col = N.mix(col, (0.20, 0.13, 0.08), run * 0.45 * N.smooth(-0.5, 1.0, streak))
+        inside = N.smooth(-hh * 0.2, -hh, down)  # 0 at the foot, where light still falls
+        foot = N.smooth(hh - 0.035, hh - 0.008, np.hypot(np.maximum(uu - (w / 2 - hh), 0), down + 0.016) + ragged) * (down > 0)
+        dark = N.mix(N.flat(n, (0.035, 0.035, 0.03)), (0.004, 0.004, 0.004), inside)
+        dark = N.mix(dark, (0.30, 0.26, 0.21), foot * 0.8)  # the plate's thickness, lit from above
+        col = N.mix(col, dark, hole)
+        rough = rough * (1 - hole) + 0.95 * hole
+        height = height * (1 - hole) - hole * 0.03 + rim * 0.006
+    half = lambda image: 0.25 * sum(image[i::2, j::2] for i in (0, 1) for j in (0, 1))
+    mr = N.rough_metal(rough, 0.15 * (1 - silt))
+    return np.clip(0.5 * (col[::2] + col[1::2]), 0, 1), half(half(mr)), N.normal_map(half(height), length, girth)
 
 
 def deck(n=512, size=3.2):
