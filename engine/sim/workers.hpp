@@ -9,6 +9,8 @@
 
 namespace neritic::sim {
 
+inline constexpr unsigned kMostThreads = 256;  // that a user may ask for
+
 class Workers {
  public:
   // threads: the caller's included; 1 starts none.

@@ -53,8 +53,9 @@ Result<std::unique_ptr<VectorEnv>> VectorEnv::create(const VectorEnvOptions& opt
   if (options.count < 1 || options.count > kMostEnvs)
     return refusal("num_envs", fmt::format("{}", options.count), fmt::format("1 to {}", kMostEnvs));
   if (options.most_steps < 1) return refusal("max_steps", "0", "1 or more");
-  if (options.threads > 256)
-    return refusal("threads", fmt::format("{}", options.threads), "0 (all cores) to 256");
+  if (options.threads > sim::kMostThreads)
+    return refusal("threads", fmt::format("{}", options.threads),
+                   fmt::format("0 (all cores) to {}", sim::kMostThreads));
   NERITIC_TRY_STATUS(check(options.random));
   NERITIC_TRY(auto model, EnvModel::read(options.vehicle, options.step_s, options.method));
   return std::unique_ptr<VectorEnv>(new VectorEnv(options, std::move(model)));

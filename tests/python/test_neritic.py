@@ -247,6 +247,13 @@ class Worlds(unittest.TestCase):
                      lambda: world.link("rov/collision", loss=2), lambda: world.images("rov/imu"),
                      lambda: world.restore(b"nothing"), lambda: neritic.vector("sleep", 2),
                      lambda: neritic.vector("hover", 2, randomise={"colour": 1}),
+                     lambda: world.tick(-1), lambda: world.tick(1.5), lambda: world.tick("a"), lambda: world.tick(2**63),
+                     lambda: rov.goto("x", 0, 0), lambda: rov.goto(0, 0, 0, velocity=1), lambda: rov.wrench([0] * 5),
+                     lambda: rov.velocity([1, 0, 0]), lambda: rov.goto(0, 0, 0, hold="x"), lambda: rov.receive(),
+                     lambda: rov.fail([99]), lambda: rov.fail([-1]), lambda: rov.fail("x"),
+                     lambda: neritic.open(MISSION, seed=-1), lambda: neritic.open(MISSION, seed=2**64),
+                     lambda: neritic.open(MISSION, threads=10**6), lambda: neritic.vector("hover", "x"),
+                     lambda: neritic.vector("hover", 2).reset(seed=-1), lambda: neritic.vector("hover", 2).reset(seed=[1, 2, 3]),
                      lambda: neritic.vector("hover", 0), lambda: neritic.vector("hover", 2).step(np.zeros(3))):
             with self.assertRaises(neritic.BadInput) as caught:
                 call()

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Optional, Sequence, Union
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .arguments import numbers, whole
 from .errors import BadInput
 from .observations import Message
 
@@ -47,7 +48,7 @@ class Agent:
         """The messages that its modem received since the last call, oldest first (the newest 1024)."""
         if not self.modem:
             raise BadInput(f"{self.name}: receive: found an agent without a modem; accepted: "
-                           f"{', '.join(self._world._modems)}")
+                           f"{', '.join(self._world._modems) or 'none: the scene has no modem'}")
         mail = self._world._mail[f"{self.name}/modem"]
         messages = list(mail)
         mail.clear()
@@ -55,8 +56,13 @@ class Agent:
 
     def command(self, kind: str, values: ArrayLike, hold: float = 0.0) -> None:
         """A command by its name and numbers, as the methods below send it."""
-        self._world._core.command(self.name, kind, np.asarray(values, np.float64).ravel(), hold,
-                                  self._world.source)
+        self._world._core.command(self.name, kind, numbers(f"{self.name}: {kind}", values),
+                                  float(numbers(f"{self.name}: {kind}: hold", hold, 1)[0]), self._world.source)
+
+    def _joined(self, kind: str, hold: float, **parts: tuple[ArrayLike, int]) -> None:
+        """A command made of parts: each its values and how many they must be."""
+        self.command(kind, np.concatenate([numbers(f"{self.name}: {kind}: {part}", values, count)
+                                           for part, (values, count) in parts.items()]), hold)
 
     def grip(self, choice: str) -> None:
         """Its gripper or hands: "close" grabs what comes into reach, "open" drops it, "auto" keeps what it has
@@ -86,17 +92,17 @@ class Vehicle(Agent):
              velocity: Sequence[float] = (0.0, 0.0, 0.0), hold: float = 0.0) -> None:
         """Go to this place and stay there, level: east, north, up in metres, yaw from east towards north.
         velocity: of the place itself, if it moves."""
-        self.command("goto", [x, y, z, yaw, *velocity], hold)
+        self._joined("goto", hold, x=(x, 1), y=(y, 1), z=(z, 1), yaw=(yaw, 1), velocity=(velocity, 3))
 
     def velocity(self, forward: float, left: float = 0.0, up: float = 0.0, yaw_rate: float = 0.0,
                  hold: float = 0.0) -> None:
         """Move over ground at this velocity, level: m/s relative to the heading, and rad/s."""
-        self.command("velocity", [forward, left, up, yaw_rate], hold)
+        self._joined("velocity", hold, forward=(forward, 1), left=(left, 1), up=(up, 1), yaw_rate=(yaw_rate, 1))
 
     def wrench(self, force: Sequence[float], torque: Sequence[float] = (0.0, 0.0, 0.0),
                hold: float = 0.0) -> None:
         """Forces and moments in N and N m, body axes. Where they are 0, depth and heading are held."""
-        self.command("wrench", [*force, *torque], hold)
+        self._joined("wrench", hold, force=(force, 3), torque=(torque, 3))
 
     def thrusters(self, force_n: ArrayLike, hold: float = 0.0) -> None:
         """The force of each thruster in N, in the order of the vehicle's file. Nothing is held."""
@@ -109,7 +115,8 @@ class Vehicle(Agent):
     def fail(self, thrusters: Sequence[int] = ()) -> None:
         """These thrusters, counted from 0, give no thrust from now on; () repairs all."""
         failed = np.zeros(len(self.thruster_n))
-        failed[list(thrusters)] = 1.0
+        for place in thrusters:
+            failed[whole(f"{self.name}: fail", place, 0, len(failed) - 1)] = 1.0
         self.command("faults", failed)
 
 
@@ -130,11 +137,12 @@ class Diver(Agent):
              hold: float = 0.0) -> None:
         """The head's orientation (world from head; forward, left, up) and, if given, its position."""
         placed = position is not None
-        self.command("head", [*(position or (0.0, 0.0, 0.0)), *orientation, placed], hold)
+        self._joined("head", hold, position=(position if placed else np.zeros(3), 3), orientation=(orientation, 4),
+                     placed=(placed, 1))
 
     def gas(self, tank: int) -> None:
         """Breathe from that tank; 0 is the first."""
-        self.command("gas", [tank])
+        self.command("gas", [whole(f"{self.name}: gas", tank, 0, 1000)])
 
     def regulator(self, supply: str = "auto", flow: str = "auto") -> None:
         """supply: the diver breathes from "own" tanks, the "donor"'s, or the donor's once the own ones are empty
@@ -151,10 +159,10 @@ class TrackedObject(Agent):
              velocity: Optional[Sequence[float]] = None,
              angular_velocity: Sequence[float] = (0.0, 0.0, 0.0), hold: float = 0.0) -> None:
         """Places it there now. Velocities are in world axes; without them they follow from two poses."""
-        values = [*position, *orientation]
+        parts = {"position": (position, 3), "orientation": (orientation, 4)}
         if velocity is not None:
-            values += [*velocity, *angular_velocity]
-        self.command("pose", values, hold)
+            parts.update(velocity=(velocity, 3), angular_velocity=(angular_velocity, 3))
+        self._joined("pose", hold, **parts)
 
     def joints(self, rotations: ArrayLike, hold: float = 0.0) -> None:
         """The limbs of a diver who swims elsewhere, as in Diver.joints(). The object has a diver's model."""

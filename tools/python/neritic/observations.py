@@ -192,7 +192,7 @@ class Observations(Mapping[str, Union[Reading, Image]]):
             return self._images[name]
         place = self._world._places.get(name)
         if place is None:
-            raise KeyError(f"found '{name}'; accepted: {', '.join(self)}")
+            raise KeyError(f"found '{name}'; accepted: {', '.join(self) or 'none: nothing has arrived yet'}")
         if place >= len(self._of) or self._of.header(place)[1] == 0:
             raise KeyError(f"{name}: nothing has arrived yet")
         return Reading(self._of, place, self._world._streams[place], self._world._offsets[place])

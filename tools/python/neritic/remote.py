@@ -11,6 +11,7 @@ import re
 import struct
 import threading
 import time
+import weakref
 from typing import Any, Mapping, Optional, Union
 
 import numpy as np
@@ -82,6 +83,11 @@ class _Ring:
         return data if len(data) == size and claimed - position <= self.capacity else None
 
 
+def _end(socket: Any, context: Any) -> None:
+    socket.close(0)
+    context.term()
+
+
 def _key(file: Union[str, os.PathLike[str]], word: str) -> bytes:
     with open(file, encoding="ascii", errors="replace") as lines:
         found = re.search(rf"^{word} (\S{{40}})$", lines.read(), re.MULTILINE)
@@ -110,6 +116,8 @@ class Core:
         self._context = zmq.Context()
         socket = self._socket = self._context.socket(zmq.DEALER)
         socket.linger = 0
+        # Also where close() was forgotten: a context waits for open sockets.
+        self._end = weakref.finalize(self, _end, socket, self._context)
         if key is not None and server_key is not None:
             socket.curve_serverkey = _key(server_key, "public")
             socket.curve_publickey, socket.curve_secretkey = _key(key, "public"), _key(key, "secret")
@@ -309,8 +317,7 @@ class Core:
 
     def close(self) -> None:
         self.closed = True
-        self._socket.close(0)
-        self._context.term()
+        self._end()
 
 
 class RemoteWorld(World):

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core, spaces
+from .arguments import whole
 from .errors import BadInput
 
 TASKS = ("hover", "track", "dock", "follow", "shark")
@@ -87,10 +88,9 @@ class VectorEnv:
         if options:
             raise BadInput(f"options: found {sorted(options)}; accepted: none")
         seeds = [self._next_seed] if seed is None else [seed] if isinstance(seed, (int, np.integer)) else list(seed)
-        if any(one < 0 for one in seeds):
-            raise BadInput(f"seed: found {min(seeds)}; accepted: 0 or more")
-        self._next_seed = int(seeds[0]) + 1
-        self._core.reset([int(one) for one in seeds])
+        seeds = [whole("seed", one, 0, 2**64 - 1) for one in seeds]
+        self._next_seed = (seeds[0] + 1) % 2**64
+        self._core.reset(seeds)
         return self._given(self._observation), {}
 
     def step(self, actions: ArrayLike) -> tuple[dict[str, NDArray[np.float32]], NDArray[np.float32],
@@ -156,8 +156,7 @@ def vector(task: str, num_envs: int = 1, *, vehicle: Union[None, str, os.PathLik
         if found not in accepted:
             raise BadInput(f"{name}: found '{found}'; accepted: {', '.join(accepted)}")
     for name, number in (("num_envs", num_envs), ("max_steps", max_steps), ("threads", threads)):
-        if not 0 <= number < 2**31:
-            raise BadInput(f"{name}: found {number}; accepted: 0 to {2**31 - 1}")
+        whole(name, number, 0, 2**31 - 1)
     random = None if randomise is False else {**RANDOMISED, **(randomise if isinstance(randomise, Mapping) else {})}
     path = os.fspath(vehicle) if vehicle is not None else str(_vehicle_file())
     core = _core.VectorEnv(task, num_envs, path, step_s, max_steps, method, substeps, thrust_table, random,

@@ -13,8 +13,12 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from .agents import Agent, Diver, TrackedObject, Vehicle
+from .arguments import numbers, whole
 from .errors import BadInput
 from .observations import MODEM_EVENTS, Image, Message, Observations, Reading, Stream, Truth, offsets_of
+
+MOST_STEPS = 100_000_000
+"""Of one tick."""
 
 
 class World:
@@ -104,8 +108,9 @@ class World:
     # Time.
 
     def tick(self, steps: int = 1) -> Observations:
-        """Runs this number of physics steps and returns what has arrived by then. Callbacks run after them."""
-        of = self._core.tick(steps)
+        """Runs this number of physics steps, up to MOST_STEPS, and returns what has arrived by then. Callbacks run
+        after them."""
+        of = self._core.tick(whole("tick: steps", steps, 0, MOST_STEPS))
         self._after_tick()
         return Observations(self, of, self._images)
 
@@ -116,6 +121,7 @@ class World:
     async def ticks(self, steps: int = 1, count: Optional[int] = None) -> AsyncIterator[Observations]:
         """Ticks of this number of steps, as an asynchronous iterator. Each runs on another thread, so that the
         event loop continues. count: the number of ticks; None: without end."""
+        whole("ticks: steps", steps, 0, MOST_STEPS)
         done = 0
         while count is None or done < count:
             of = await asyncio.get_running_loop().run_in_executor(None, self._core.tick, steps)
@@ -141,7 +147,8 @@ class World:
     def link(self, stream: str, delay: float = 0.0, jitter: float = 0.0, loss: float = 0.0) -> None:
         """Readings of the stream arrive `delay` seconds late plus up to `jitter` (evenly distributed), and a share
         `loss` never. The measurements and their stamps do not change."""
-        self._core.set_link(self._core.stream(stream), delay, jitter, loss)
+        row = numbers(f"link: {stream}: delay, jitter, loss", (delay, jitter, loss), 3)
+        self._core.set_link(self._core.stream(stream), *row.tolist())
 
     # Images.
 
@@ -185,7 +192,7 @@ class World:
     def inject(self, stream: str, values: ArrayLike, source: str, stamp: Optional[float] = None) -> None:
         """Sends a sample into a stream of inputs, as the device `source` would. It acts if that source has the
         authority. stamp: when it was measured; None: now."""
-        self._core.inject(stream, np.asarray(values, np.float64).ravel(), source, stamp)
+        self._core.inject(stream, numbers(f"inject: {stream}", values), source, stamp)
 
     def close(self) -> None:
         """Ends the world and its recording."""
@@ -248,6 +255,9 @@ def open(scene: Union[str, os.PathLike[str]], seed: Optional[int] = None, *, thr
     """Opens a scene in this process.
 
     scene: a TOML file in which something moves by physics. seed: replaces the scene's. threads: their number
-    in a step. real_time: ticks wait for the clock, and the scene's devices send; else ticks run at once.
+    in a step; 0: by the scene's size. real_time: ticks wait for the clock, and the scene's devices send; else ticks run at once.
     device: a part of the name of the Vulkan device for images. validation: checks Vulkan calls."""
-    return World(_core.World(os.fspath(scene), seed, real_time, threads, device, validation))
+    if seed is not None:
+        seed = whole("seed", seed, 0, 2**64 - 1)
+    return World(_core.World(os.fspath(scene), seed, real_time, whole("threads", threads, 0, 2**32 - 1), device,
+                             validation))
