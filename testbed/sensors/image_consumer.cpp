@@ -41,41 +41,46 @@ bool add(std::vector<std::size_t>& sensors, std::vector<Capture>& captures,
 
 }  // namespace
 
-ImageConsumer::ImageConsumer(std::vector<ImageStream> streams, std::vector<StreamId> ids,
-                             const std::vector<double>& rates_hz, ImageSink& sink)
-    : streams_(std::move(streams)), ids_(std::move(ids)), schedule_(rates_hz), sink_(&sink) {
-  for (const ImageStream& stream : streams_) counts_.push_back({stream.name});
-}
+ImageConsumer::ImageConsumer(std::vector<ImageStream> all, ImageSink& sink)
+    : all_(std::move(all)), schedule_({}), sink_(&sink) {}
 
 Result<ImageConsumer> ImageConsumer::create(const scene::Scene& scene,
                                             const std::vector<Wish>& wishes, ImageSink& sink) {
-  const std::vector<ImageStream> all = image_streams(scene);
-  std::vector<ImageStream> streams;
+  ImageConsumer made(image_streams(scene), sink);
+  NERITIC_TRY_STATUS(made.wish(wishes));
+  return made;
+}
+
+Status ImageConsumer::wish(const std::vector<Wish>& wishes) {
   std::vector<StreamId> ids;
   std::vector<double> rates_hz;
+  std::vector<Counts> counts;
   for (const Wish& wish : wishes) {
-    const auto found = std::ranges::find(all, wish.stream, &ImageStream::name);
-    if (found == all.end()) {
+    const auto found = std::ranges::find(all_, wish.stream, &ImageStream::name);
+    if (found == all_.end()) {
       std::string names;
-      for (const ImageStream& stream : all) names += (names.empty() ? "" : ", ") + stream.name;
+      for (const ImageStream& stream : all_) names += (names.empty() ? "" : ", ") + stream.name;
       return refusal("images", wish.stream,
                      names.empty() ? "none: the scene has no sensor" : names);
     }
     if (!(wish.rate_hz >= 0.0 && std::isfinite(wish.rate_hz)))
       return refusal("images of " + wish.stream, fmt::format("{} Hz", wish.rate_hz),
                      "0 (the sensor's own rate) or more");
-    streams.push_back(*found);
-    ids.push_back(static_cast<StreamId>(found - all.begin()));
+    ids.push_back(static_cast<StreamId>(found - all_.begin()));
     rates_hz.push_back(wish.rate_hz == 0.0 ? found->rate_hz
                                            : std::min(wish.rate_hz, found->rate_hz));
+    counts.push_back({wish.stream});
   }
-  return ImageConsumer(std::move(streams), std::move(ids), rates_hz, sink);
+  ids_ = std::move(ids);
+  schedule_ = PingSchedule(rates_hz);
+  counts_ = std::move(counts);
+  return {};
 }
 
 std::vector<ImageConsumer::Asked> ImageConsumer::ask(FrameRequest& request) {
   std::vector<Asked> asked;
   for (const PingSchedule::Due& due : schedule_.due(request.time_s)) {
-    const ImageStream& stream = streams_[due.sensor];
+    const ImageStream& stream = all_[ids_[due.sensor]];
     if (!sink_->ready(stream)) {
       ++counts_[due.sensor].dropped;
       continue;
@@ -85,7 +90,7 @@ std::vector<ImageConsumer::Asked> ImageConsumer::ask(FrameRequest& request) {
       (void)add(request.cameras, request.camera_captures, stream);
     else if (add(request.sonars, request.sonar_captures, stream))
       request.pings.push_back(static_cast<std::uint32_t>(beat));
-    asked.push_back({due.sensor, beat});
+    asked.push_back({ids_[due.sensor], beat});
   }
   return asked;
 }
@@ -93,19 +98,22 @@ std::vector<ImageConsumer::Asked> ImageConsumer::ask(FrameRequest& request) {
 Status ImageConsumer::give(const scene::Scene& scene, const std::vector<Asked>& asked,
                            FrameResult& result) {
   for (const Asked& one : asked) {
-    std::optional<ImageSample> image = image_of(streams_[one.wish], scene, result);
+    const auto wish = std::ranges::find(ids_, one.stream);
+    if (wish == ids_.end()) continue;
+    const ImageStream& stream = all_[one.stream];
+    std::optional<ImageSample> image = image_of(stream, scene, result);
     if (!image) continue;
-    image->header = {.stream = ids_[one.wish],
+    image->header = {.stream = one.stream,
                      .sequence = one.beat,
                      .captured_ns = std::llround(result.time_s * 1e9),
                      .arrived_ns = now_ns()};
     if (sink_->takes()) {
       // The sample's span stays: the pixels move, not their bytes.
-      NERITIC_TRY_STATUS(sink_->take(*image, take_pixels(streams_[one.wish], scene, result)));
+      NERITIC_TRY_STATUS(sink_->take(*image, take_pixels(stream, scene, result)));
     } else {
       NERITIC_TRY_STATUS(sink_->accept(*image));
     }
-    ++counts_[one.wish].given;
+    ++counts_[static_cast<std::size_t>(wish - ids_.begin())].given;
   }
   return {};
 }

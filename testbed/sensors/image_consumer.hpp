@@ -38,7 +38,7 @@ class ImageConsumer {
   };
   // An image that a frame computes for a consumer.
   struct Asked {
-    std::size_t wish = 0;
+    StreamId stream = 0;
     std::uint64_t beat = 0;
   };
 
@@ -46,6 +46,9 @@ class ImageConsumer {
   // none.
   static Result<ImageConsumer> create(const scene::Scene& scene, const std::vector<Wish>& wishes,
                                       ImageSink& sink);
+  // Other wishes from the next frame on; errors as create(), which leave it as it was. Images on
+  // their way for which nobody wishes any more are left out.
+  Status wish(const std::vector<Wish>& wishes);
 
   // Adds what is due at the request's time to the request.
   std::vector<Asked> ask(FrameRequest& request);
@@ -57,11 +60,10 @@ class ImageConsumer {
   const std::vector<Counts>& counts() const { return counts_; }
 
  private:
-  ImageConsumer(std::vector<ImageStream> streams, std::vector<StreamId> ids,
-                const std::vector<double>& rates_hz, ImageSink& sink);
+  ImageConsumer(std::vector<ImageStream> all, ImageSink& sink);
 
-  std::vector<ImageStream> streams_;  // of each wish
-  std::vector<StreamId> ids_;
+  std::vector<ImageStream> all_;  // by id
+  std::vector<StreamId> ids_;     // of each wish
   PingSchedule schedule_;
   std::vector<Counts> counts_;
   ImageSink* sink_;

@@ -7,8 +7,14 @@
 
 namespace neritic::testbed {
 
-DiveLink::DiveLink(LivePhysics& physics, const scene::Scene& scene, const std::string& path)
-    : world_(World::attach(physics, scene, path)), outputs_(OutputSamples::all(physics.world())) {}
+DiveLink::DiveLink(const LivePhysics& physics, std::unique_ptr<World> world)
+    : world_(std::move(world)), outputs_(OutputSamples::all(physics.world())) {}
+
+Result<std::unique_ptr<DiveLink>> DiveLink::create(LivePhysics& physics, const scene::Scene& scene,
+                                                   const std::string& path) {
+  NERITIC_TRY(auto world, World::attach(physics, scene, path));
+  return std::unique_ptr<DiveLink>(new DiveLink(physics, std::move(world)));
+}
 
 Status DiveLink::accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample> outputs) {
   if (outputs.empty()) return {};

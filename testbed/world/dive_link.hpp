@@ -15,7 +15,8 @@ namespace neritic::testbed {
 class DiveLink final : public StepSink, public SampleSource {
  public:
   // Borrows physics and scene.
-  DiveLink(LivePhysics& physics, const scene::Scene& scene, const std::string& path);
+  static Result<std::unique_ptr<DiveLink>> create(LivePhysics& physics, const scene::Scene& scene,
+                                                  const std::string& path);
 
   // The loop's thread.
   World& world() { return *world_; }
@@ -28,6 +29,8 @@ class DiveLink final : public StepSink, public SampleSource {
   Status finish() override { return {}; }
 
  private:
+  DiveLink(const LivePhysics& physics, std::unique_ptr<World> world);
+
   // While frames are slower than these, the oldest go.
   static constexpr std::size_t kMostWaiting = 1 << 15;
 

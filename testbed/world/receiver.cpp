@@ -1,3 +1,5 @@
+#include <cstring>
+
 #include "engine/core/ros_frames.hpp"
 #include "testbed/world/ros_samples.hpp"
 #include "testbed/world/world_parts.hpp"
@@ -86,6 +88,24 @@ void Receiver::forget() {
   readings_.clear();
   images_.clear();
   last_step_.reset();
+}
+
+Status ImageReceiver::accept(const ImageSample& image) {
+  const auto copied = [&]<class T>(std::vector<T> pixels) -> ImagePixels {
+    pixels.resize(image.data.size() / sizeof(T));
+    std::memcpy(pixels.data(), image.data.data(), pixels.size() * sizeof(T));
+    return pixels;
+  };
+  switch (image.stream->kind) {
+    case ImageKind::kColor:
+      return take(image, copied(std::vector<std::uint8_t>()));
+    case ImageKind::kLabels:
+    case ImageKind::kInstances:
+    case ImageKind::kEchoLabels:
+      return take(image, copied(std::vector<std::uint16_t>()));
+    default:
+      return take(image, copied(std::vector<float>()));
+  }
 }
 
 Status ImageReceiver::take(const ImageSample& image, ImagePixels pixels) {

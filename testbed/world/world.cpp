@@ -99,6 +99,9 @@ World::~World() {
 
 Result<std::unique_ptr<World>> World::open(const std::filesystem::path& path,
                                            const WorldOptions& options) {
+  if (options.threads > sim::kMostThreads)
+    return refusal("threads", fmt::format("{}", options.threads),
+                   fmt::format("0 (by the scene's size) to {}", sim::kMostThreads));
   NERITIC_TRY(scene::Scene scene, scene::load_scene(path));
   if (options.seed) scene.seed = *options.seed;
   if (!PhysicsWorld::needed(scene))
@@ -128,8 +131,8 @@ Result<std::unique_ptr<World>> World::open(const std::filesystem::path& path,
   return world;
 }
 
-std::unique_ptr<World> World::attach(LivePhysics& physics, const scene::Scene& scene,
-                                     const std::string& path) {
+Result<std::unique_ptr<World>> World::attach(LivePhysics& physics, const scene::Scene& scene,
+                                             const std::string& path) {
   std::unique_ptr<World> world(new World);
   world->parts_ = std::make_unique<Parts>();
   Parts& parts = *world->parts_;
@@ -139,9 +142,12 @@ std::unique_ptr<World> World::attach(LivePhysics& physics, const scene::Scene& s
   parts.scene.title = scene.title, parts.scene.seed = scene.seed;
   parts.motions = &scene;
   parts.agents = agents_of(parts.world());
-  parts.streams = streams_of(parts.world(), parts.scene);
+  parts.streams = streams_of(parts.world(), scene);
   parts.first_image = parts.world().streams().size();
   parts.receiver = std::make_unique<Receiver>(parts.world(), scene.seed, parts.streams.size());
+  parts.image_receiver = std::make_unique<ImageReceiver>(
+      *parts.receiver, static_cast<std::uint32_t>(parts.first_image), false);
+  NERITIC_TRY(parts.consumer, ImageConsumer::create(scene, {}, *parts.image_receiver));
   return world;
 }
 

@@ -29,7 +29,7 @@ struct WorldOptions {
   std::optional<std::uint64_t> seed;  // instead of the scene's
   // Ticks wait for the host's clock, and the scene's devices are heard; else they run at once.
   bool real_time = false;
-  unsigned threads = 1;     // of a step
+  unsigned threads = 1;     // of a step; 0: by the scene's size; at most sim::kMostThreads
   std::string device;       // of images: part of its name; empty: the best
   bool validation = false;  // of Vulkan, for images
 };
@@ -106,6 +106,7 @@ struct Instruments {
   std::vector<std::array<std::string, 3>> streams;
 };
 
+class ImageConsumer;
 class LivePhysics;
 struct Sample;
 
@@ -115,10 +116,10 @@ class World {
   static Result<std::unique_ptr<World>> open(const std::filesystem::path& scene,
                                              const WorldOptions& options = {});
   // A world of a physics that another loop turns; it and the scene outlive this world: readings,
-  // commands and truths of it, no images, no tick(), no restore(), no recording. path: of the
-  // scene.
-  static std::unique_ptr<World> attach(LivePhysics& physics, const scene::Scene& scene,
-                                       const std::string& path);
+  // commands and truths of it, no tick(), no restore(), no recording. Its images are computed by
+  // that loop, among whose consumers images() must be. path: of the scene.
+  static Result<std::unique_ptr<World>> attach(LivePhysics& physics, const scene::Scene& scene,
+                                               const std::string& path);
   // Ends the recording.
   ~World();
 
@@ -159,6 +160,8 @@ class World {
   Status drop_image(std::uint32_t stream);
   // Those that arrived since the last call, in their order, with their pixels: nothing is copied.
   std::vector<std::unique_ptr<WorldImage>> take_images();
+  // Of an attached world: for the loop, which computes what is wanted. Otherwise null.
+  ImageConsumer* images();
 
   // A command for an agent takes the authority over its group and holds until the next one,
   // release() or, if hold_s > 0, until so long nothing came. Vehicles:

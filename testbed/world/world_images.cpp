@@ -13,7 +13,7 @@ Status World::Parts::make_session() {
   NERITIC_TRY(device, gpu::Device::create(wanted));
   NERITIC_TRY(session, Session::create(*device, scene));
   image_receiver =
-      std::make_unique<ImageReceiver>(*receiver, static_cast<std::uint32_t>(first_image));
+      std::make_unique<ImageReceiver>(*receiver, static_cast<std::uint32_t>(first_image), true);
   return {};
 }
 
@@ -21,6 +21,7 @@ Status World::Parts::make_session() {
 Status World::Parts::renew_consumer() {
   std::vector<ImageConsumer::Wish> wishes;
   for (const auto& [stream, rate_hz] : wished) wishes.push_back({streams[stream].name, rate_hz});
+  if (attached()) return consumer->wish(wishes);
   std::optional<ImageConsumer> made;
   if (!wishes.empty()) {
     NERITIC_TRY(made, ImageConsumer::create(scene, wishes, *image_receiver));
@@ -41,7 +42,7 @@ Status World::want_image(std::uint32_t stream, double rate_hz, bool keep) {
     return refusal("images",
                    info.name + ", which leads to a picture that commands have yet to decide",
                    "color, depth, normals, labels, instances, echoes, echo_labels");
-  NERITIC_TRY_STATUS(parts.make_session());
+  if (!parts.attached()) NERITIC_TRY_STATUS(parts.make_session());
   const auto before = parts.wished;
   parts.wished[stream] = rate_hz;
   parts.receiver->kept[stream] = keep ? 1 : 0;
@@ -55,6 +56,10 @@ Status World::drop_image(std::uint32_t stream) {
   if (parts.wished.erase(stream) == 0)
     return refusal("images", "a stream that is not wanted", "one of want_image()");
   return parts.renew_consumer();
+}
+
+ImageConsumer* World::images() {
+  return parts_->attached() ? &*parts_->consumer : nullptr;
 }
 
 std::vector<std::unique_ptr<WorldImage>> World::take_images() {

@@ -50,17 +50,20 @@ class Receiver final : public StepSink {
   OnTheWay<std::unique_ptr<WorldImage>> images_;
 };
 
-// The images that someone wants, as a World gives them.
+// The images that someone wants, as a World gives them. alone: nobody else of its loop wants any,
+// so that it takes their pixels without a copy.
 class ImageReceiver final : public ImageSink {
  public:
-  ImageReceiver(Receiver& receiver, std::uint32_t first) : receiver_(receiver), first_(first) {}
-  bool takes() const override { return true; }
-  Status accept(const ImageSample&) override { return {}; }
+  ImageReceiver(Receiver& receiver, std::uint32_t first, bool alone)
+      : receiver_(receiver), first_(first), alone_(alone) {}
+  bool takes() const override { return alone_; }
+  Status accept(const ImageSample& image) override;
   Status take(const ImageSample& image, ImagePixels pixels) override;
 
  private:
   Receiver& receiver_;
   std::uint32_t first_ = 0;  // stream of images
+  bool alone_ = true;
 };
 
 struct World::Parts {
@@ -93,6 +96,7 @@ struct World::Parts {
   std::map<std::pair<SourceId, StreamId>, std::uint64_t> sequences;
   std::map<std::pair<StreamId, std::uint64_t>, Holder> holders;  // by event stream and group
 
+  bool attached() const { return !owned_physics; }
   const PhysicsWorld& world() const { return physics->world(); }
   const sim::Snapshot<PhysicsState>& newest() const { return physics->shown_snapshot(); }
   void begin_loop();

@@ -339,6 +339,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
     NERITIC_TRY(image_consumer, ImageConsumer::create(session->scene(), wishes, *images));
     consumers.push_back(&*image_consumer);
   }
+  if (served) consumers.push_back(served->images());
   const double start_s = physics ? physics->newest().time_s : 0.0, period_s = 1.0 / camera.rate_hz;
   SightCheck sight(*session, physics ? &physics->motion() : nullptr,
                    [](const std::string& line) { log_warn("{}", line); });

@@ -25,17 +25,18 @@ Result<ServerOptions> server_options(const std::string& flag, const std::string&
   return options;
 }
 
-ServedDive::ServedDive(LivePhysics& physics, const scene::Scene& scene)
-    : link_(physics, scene, scene.path), served_(link_.world(), hand_off_, {.real_time = true}) {
-  link_.each_turn([this] { served_.turn(); });
+ServedDive::ServedDive(std::unique_ptr<DiveLink> link)
+    : link_(std::move(link)), served_(link_->world(), hand_off_, {.real_time = true}) {
+  link_->each_turn([this] { served_.turn(); });
 }
 
 Result<std::unique_ptr<ServedDive>> ServedDive::start(const ServerOptions& options,
                                                       LivePhysics& physics,
                                                       const scene::Scene& scene) {
-  std::unique_ptr<ServedDive> dive(new ServedDive(physics, scene));
+  NERITIC_TRY(auto link, DiveLink::create(physics, scene, scene.path));
+  std::unique_ptr<ServedDive> dive(new ServedDive(std::move(link)));
   NERITIC_TRY(dive->server_,
-              Server::start(facts_of(dive->link_.world(), true, std::string(program_version())),
+              Server::start(facts_of(dive->link_->world(), true, std::string(program_version())),
                             dive->hand_off_, options));
   return dive;
 }

@@ -22,13 +22,15 @@ class ServedDive {
   static Result<std::unique_ptr<ServedDive>> start(const testbed::ServerOptions& options,
                                                    testbed::LivePhysics& physics,
                                                    const scene::Scene& scene);
-  testbed::DiveLink& link() { return link_; }
+  testbed::DiveLink& link() { return *link_; }
+  // For the loop's sensors: the images that clients want.
+  testbed::ImageConsumer* images() { return link_->world().images(); }
   Address address() const { return server_->address(); }
 
  private:
-  ServedDive(testbed::LivePhysics& physics, const scene::Scene& scene);
+  explicit ServedDive(std::unique_ptr<testbed::DiveLink> link);
 
-  testbed::DiveLink link_;
+  std::unique_ptr<testbed::DiveLink> link_;
   testbed::HandOff hand_off_;
   std::unique_ptr<testbed::Server> server_;
   testbed::WorldServer served_;

@@ -184,5 +184,25 @@ TEST_F(ImageConsumers, AStreamThatIsNotThereIsRefusedInOneLine) {
       "rov_sonar/instances");
 }
 
+TEST_F(ImageConsumers, WishesMayChangeWhileAFrameIsOnItsWay) {
+  Images images;
+  ImageConsumer c = consumer({}, images);
+  FrameRequest none, first, then;
+  EXPECT_TRUE(c.ask(none).empty());
+  EXPECT_TRUE(none.cameras.empty() && none.sonars.empty());
+  EXPECT_TRUE(c.wish({{"rov_eye/depth"}}).ok());
+  const auto on_their_way = c.ask(first);
+  ASSERT_EQ(on_their_way.size(), 1u);
+  NERITIC_ASSERT_OK(FrameResult result, session_->render(first));
+  EXPECT_TRUE(c.wish({{"rov_sonar/echoes"}}).ok());
+  EXPECT_TRUE(c.give(scene_, on_their_way, result).ok());
+  EXPECT_TRUE(images.kept.empty());
+  EXPECT_FALSE(c.wish({{"rov_eye/colour"}}).ok());  // which leaves the wishes
+  then.time_s = 1.0;
+  EXPECT_EQ(c.ask(then).size(), 1u);
+  EXPECT_EQ(then.sonars, std::vector<std::size_t>{0});
+  EXPECT_TRUE(then.cameras.empty());
+}
+
 }  // namespace
 }  // namespace neritic::testbed
