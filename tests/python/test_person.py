@@ -50,7 +50,8 @@ class Headset(unittest.TestCase):
                 file.write(SCRIPT + f"report {folder}/report\n")
             done = subprocess.run(
                 ["/usr/bin/python3", "-B", str(ROOT / "tools/experiment"), "shark", "--program", PROGRAM, "--out", out, "--runs", "1", "--quiet",
-                 "--set=person=\"headset\"", "--set=person_bearing_deg=35", "--set=seconds=3", "--set=gaze_within_deg=12", "--set=from_recording=true"],
+                 "--set=person=\"headset\"", "--set=person_bearing_deg=35", "--set=seconds=3", "--set=gaze_within_deg=12", "--set=from_recording=true",
+                 "--set=detector=\"shipped\"", "--set=detector_least=0.2", "--set=shark_known_by=\"sonar\""],
                 env=os.environ | {"XR_RUNTIME_JSON": manifest, "NERITIC_FAKE_XR": script}, capture_output=True, text=True, timeout=250)
             with open(os.path.join(out, "runs.jsonl")) as file:
                 run = json.loads(file.read().splitlines()[1])

@@ -15,7 +15,7 @@ import looking
 import shark_person
 from detector import model_of
 from rotations import matrix
-from scenario import Failed, Refused, Setting, draw
+from scenario import Failed, Setting, draw
 from shark_figures import figures, notes  # noqa: F401: of the kind
 from shark_scene import Judge, scene_of, shark_at
 from shark_senses import DIVER, Gaze, SonarTrack
@@ -103,8 +103,16 @@ class _Flight:
         self.s = s
         scene = tools.write("scene.toml", scene_of(s, seed))
         self.person = shark_person.Person(s, seed, tools, scene) if s["person"] != "nobody" else None
-        self.world = self.person.world if self.person else tools.python().open(scene, seed=seed)
-        self.gaze = Gaze(self.world, s, seed) if s["detector"] != "assumed" else None
+        self.world, self.gaze = self.person.world if self.person else tools.python().open(scene, seed=seed), None
+        try:
+            self._begin(seed)
+        except BaseException:
+            self.close()
+            raise
+
+    def _begin(self, seed):
+        s = self.s
+        self.gaze = Gaze(self.world, s, seed, self.person) if s["detector"] != "assumed" else None
         # The time of the world at which the shark was met; of a person, once the gaze has found it.
         self.met_s, self.eyes, self.moved_m = (None if self.person else 0.0), DIVER, 0.0
         self.track = SonarTrack(self.world, s) if s["shark_known_by"] == "sonar" else None
@@ -180,8 +188,13 @@ class _Flight:
         return False
 
     def _look(self, time, shark):
-        if self.gaze and not math.isfinite(self.told_s) and time >= 0.1 * self.gaze.looks - 1e-9 and self.gaze.sees_shark(shark):
-            self.told_s = time + self.s["detector_latency_s"] + self.s["delay_s"]
+        if not self.gaze or math.isfinite(self.told_s) or time < 0.1 * self.gaze.looks - 1e-9 or not self.gaze.sees_shark(shark):
+            return
+        # A person's detector has taken its own time already.
+        latency_s = 0.0 if self.person else self.s["detector_latency_s"]
+        self.told_s = time + latency_s + self.s["delay_s"]
+        if self.person:
+            self.person.mark("the detector says shark", looks=self.gaze.looks)
 
     def _steer(self, time, shark, speed):
         """Once the word is out: to the middle of the line, at half the shark's speed, facing the shark."""
@@ -269,13 +282,8 @@ def files(settings):
 
 
 def check(settings):
-    """Refuses a detector that is not there, before anything runs; and what a person cannot have."""
+    """Refuses a detector that is not there, before anything runs."""
     files(settings)
-    if settings["person"] == "nobody":
-        return
-    if settings["detector"] != "assumed":
-        raise Refused(f"person = {settings['person']}: found detector {settings['detector']!r}; accepted: assumed, since a person's own "
-                      "gaze says when the shark is seen")
 
 
 def alone(settings):

@@ -6,7 +6,7 @@ import numpy as np
 
 import shark_person
 from scenario import SHIPPED
-from shark_senses import CROP_DEG, DIVER, SEEN, SONAR
+from shark_senses import CROP_DEG, DIVER, LIGHT, SEEN, SONAR
 
 BESIDE_M, HELD_S, LEAST, MOST = 0.35, 1.0, 0.1, 0.9
 SCENE = """title = "A shark, a diver, an ROV"
@@ -101,7 +101,7 @@ def scene_of(s, seed):
         seed=seed, physics_hz=s["physics_hz"], shark=_scene_of_enu(shark), rov=_scene_of_enu(rov), navigation=s["navigation"],
         current=f'[current]\nkind = "uniform"\nvelocity_m_s = [{s["current_m_s"]!r}, 0, 0]' if s["current_m_s"] else "",
         diver=shark_person.diver_of(s) if person else DRAWN,
-        seen=SEEN.format(fov=CROP_DEG, **s) if looks else "", sonar=SONAR.format(**s) if sounds else "",
+        seen=("" if person else LIGHT.format(**s)) + SEEN.format(fov=CROP_DEG, **s) if looks else "", sonar=SONAR.format(**s) if sounds else "",
         shark_drawn=f'model = "{models}/shark.glb"\nclip = "swim"' if looks or sounds or person else 'shape = "sphere"',
         rov_drawn=f'model = "{models}/rov.glb"' if looks or person else 'shape = "box"\nsize_m = [0.457, 0.254, 0.575]',
         vehicle=os.path.join(SHIPPED, "..", "vehicles", file),

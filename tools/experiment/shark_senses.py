@@ -9,14 +9,15 @@ from rotations import quaternion
 from scenario import draw
 
 DIVER = np.array([0.0, 0.0, -10.0])  # east, north, up
-# With a detector that looks: light, water, and a camera that looks where the diver's eyes do.
-SEEN = """[sun]
+# With a detector that looks: light and water, which a person's scene has anyway; and a camera that looks where the diver's eyes do.
+LIGHT = """[sun]
 elevation_deg = 55
 [water]
 type = "{water}"
 scattering = true
 surface = true
-[[objects]]
+"""
+SEEN = """[[objects]]
 name = "gaze"
 shape = "sphere"
 radius_m = 0.001
@@ -33,30 +34,54 @@ CROP_DEG, EYE_M = 32.0, 0.4  # opening of a crop; the eye, ahead of the diver's 
 
 
 class Gaze:
-    """The diver's eyes and the detector: asked ten times a second, on a thread of its own, each answer awaited, so that a
-    run's numbers do not hang on the clock."""
+    """The diver's eyes and the detector, asked ten times a second, on a thread of its own.
 
-    def __init__(self, world, settings, seed):
+    A simulated diver turns the eyes to the shark, and each answer is awaited, so that a run's numbers do not hang on the clock.
+    A person's crop is where the person looks, and an answer counts when it comes."""
+
+    def __init__(self, world, settings, seed, person=None):
         detector = looking.Detector(model_of(settings["detector"]))
         self.world, self.s, self.seed, self.looker = world, settings, seed, looking.Looker(detector, settings["detector_least"])
         self.looks, self.wrong, self.work_s = 0, 0, []
-        world.images("gaze_crop/color", rate=60.0)
+        self.person, self.posed_s, self.shown = person, None, -1
+        world.images("gaze_crop/color", rate=10.0 if person else 60.0)
 
     def sees_shark(self, shark):
-        """Turns the eyes to the shark, then shows that crop to the detector."""
+        """Whether the detector said "shark": of this look, or of a person's since the last call."""
+        return self._person_sees() if self.person else self._diver_sees(shark)
+
+    def _diver_sees(self, shark):
         look = self.looks
         off = [math.radians(draw(self.seed, f"{way} {look}", -1, 1) * self.s["gaze_error_deg"]) for way in ("yaw", "pitch")]
         line = shark - DIVER
         yaw, up = math.atan2(line[1], line[0]), math.atan2(line[2], math.hypot(line[0], line[1]))
-        eye = DIVER + EYE_M * line / np.linalg.norm(line)
-        self.world["gaze"].pose(eye, quaternion(yaw + off[0], -(up + off[1]), 0.0), velocity=[0, 0, 0])
+        self._turn(DIVER, line, yaw + off[0], up + off[1])
         self.world.tick(max(1, round(1 / 60 / self.world.step_s)))
         crop = self.world.observe().get("gaze_crop/color")
         self.looks += 1
         if crop is None:
             return False
         self.looker.show(np.array(crop.pixels), look)
-        answer = self.looker.answer(wait_s=30.0)
+        return self._heard(self.looker.answer(wait_s=30.0))
+
+    def _person_sees(self):
+        gaze = self.person.gaze
+        if gaze is not None and np.linalg.norm(gaze) > 0.0:
+            self._turn(self.person.eyes, gaze, math.atan2(gaze[1], gaze[0]), math.atan2(gaze[2], math.hypot(gaze[0], gaze[1])))
+            if self.posed_s is None:
+                self.posed_s = self.world.time
+        crop = self.world.observe().get("gaze_crop/color")
+        if crop is not None and self.posed_s is not None and crop.stamp > self.posed_s and crop.sequence != self.shown:
+            self.shown = crop.sequence
+            self.looker.show(np.array(crop.pixels), self.looks)
+            self.looks += 1
+        return any([self._heard(answer) for answer in self.looker.answers()])
+
+    def _turn(self, eyes, line, yaw, up):
+        eye = eyes + EYE_M * line / np.linalg.norm(line)
+        self.world["gaze"].pose(eye, quaternion(yaw, -up, 0.0), velocity=[0, 0, 0])
+
+    def _heard(self, answer):
         self.work_s.append(answer["latency_s"])
         named = [name for name, _, _ in answer["found"]]
         self.wrong += bool(named) and "shark" not in named
