@@ -35,6 +35,8 @@ std::optional<Tether> read_tether(TableReader& parent, const std::string& vehicl
     object.placement.pose.position_m = reader.vector3("from_m", Vec3(0.0), kAnyMetres);
     object.placement.on = reader.text("from", "");
     object.placement.place_on = reader.place("from");
+    if (!object.placement.on.empty() && object.placement.on == vehicle)
+      reader.refuse("from", "another object than the vehicle at its end");
     t.attachment_m =
         reader.vector3("attachment_m", t.attachment_m, {-100, 100, false, false, "metres"});
     t.length_m = reader.number("length_m", t.length_m, {0.1, 1e5, false, false, "metres"});

@@ -103,6 +103,11 @@ void DiveRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
       figures.largest_navigation_error_m =
           std::max(figures.largest_navigation_error_m.value_or(0.0), *figures.navigation_error_m);
     }
+    if (const rov::BatteryState* battery = world_.battery(snapshot.state, i)) {
+      figures.battery_charge = battery->charge;
+      if (battery->empty != 0 && !figures.battery_empty_from_s)
+        figures.battery_empty_from_s = snapshot.time_s;
+    }
     figures.largest_tilt_rad = std::max(figures.largest_tilt_rad, tilt_of(now.body.attitude));
     if (options_.rows && row_due(i, snapshot.step)) rows_.vehicles.push_back(row_of(i, snapshot));
   }

@@ -36,6 +36,8 @@ struct DiveFigures {
   double path_m = 0.0, largest_speed_m_s = 0.0, largest_tilt_rad = 0.0;
   double shallowest_m = 1e9, deepest_m = -1e9;  // of its origin, below the still surface
   std::vector<double> arrivals_s;               // of its waypoints
+  std::optional<double> battery_charge;         // of 1, where it has a battery
+  std::optional<double> battery_empty_from_s;
   // For a vehicle that flies by its own sensors: the distance from its estimated position.
   std::optional<double> navigation_error_m, largest_navigation_error_m;
 };

@@ -273,16 +273,46 @@ std::vector<double> speeds_of(const PhysicsWorld& world, const PhysicsHuman& hum
   return out;
 }
 
-void add_unfinished(const Way& way, double seconds, std::vector<std::string>& lines) {
-  if (way.arrived >= way.waypoints_m.size()) return;
-  double nominal_s = 0.0, next_s = 0.0;
+// At its start.
+Way way_of(const PhysicsWorld& world, const PhysicsVehicle& vehicle) {
+  const Vec3& from_m = vehicle.start.position_ned_m;
+  return {vehicle.name,
+          from_m,
+          from_m,
+          vehicle.mission->waypoints_ned_m(),
+          vehicle.mission->holds_s(),
+          speeds_of(world, vehicle)};
+}
+
+// The time to waypoint `last` at those speeds, with the stops before it.
+double time_to_s(const Way& way, std::size_t last) {
+  double out_s = 0.0;
   Vec3 from = way.from_m;
-  for (std::size_t i = 0; i < way.waypoints_m.size(); ++i) {
-    nominal_s += glm::distance(from, way.waypoints_m[i]) / way.speeds_m_s[i];
-    if (i == way.arrived) next_s = nominal_s;
-    if (i + 1 < way.waypoints_m.size()) nominal_s += way.holds_s[i];
+  for (std::size_t i = 0; i <= last; ++i) {
+    out_s += glm::distance(from, way.waypoints_m[i]) / way.speeds_m_s[i];
+    if (i < last) out_s += way.holds_s[i];
     from = way.waypoints_m[i];
   }
+  return out_s;
+}
+
+// A battery that is empty before the way is done, though nothing but the electronics drew from it.
+void add_battery(const PhysicsVehicle& vehicle, const Way& way, std::vector<std::string>& lines) {
+  if (!vehicle.battery || way.waypoints_m.empty()) return;
+  const rov::Battery& battery = *vehicle.file.parameters.battery;
+  const double stored_wh = battery.charge * battery.capacity_wh;
+  const double needed_s = time_to_s(way, way.waypoints_m.size() - 1);
+  if (stored_wh * 3600.0 >= battery.hotel_w * needed_s && stored_wh > 0.0) return;
+  lines.push_back(
+      fmt::format("{}: its battery's {:.3g} Wh are gone before the {:.4g} s of its way are: its "
+                  "electronics alone draw {:.3g} W",
+                  vehicle.name, stored_wh, needed_s, battery.hotel_w));
+}
+
+void add_unfinished(const Way& way, double seconds, std::vector<std::string>& lines) {
+  if (way.arrived >= way.waypoints_m.size()) return;
+  const double nominal_s = time_to_s(way, way.waypoints_m.size() - 1);
+  const double next_s = time_to_s(way, way.arrived);
   if (seconds < nominal_s + kSlack_s && seconds < 2.0 * next_s + kSlack_s) return;
   lines.push_back(fmt::format("{}: {} of {} waypoints left after {:.4g} s, {:.3g} m to the next",
                               way.name, way.waypoints_m.size() - way.arrived,
@@ -297,6 +327,7 @@ std::vector<std::string> cannot_hold(const PhysicsWorld& world) {
   const PhysicsState start = world.start();
   for (const PhysicsVehicle& vehicle : world.vehicles()) {
     if (!vehicle.mission) continue;
+    if (vehicle.battery) add_battery(vehicle, way_of(world, vehicle), lines);
     add_axes(vehicle, lines);
     add_buoyancy(vehicle, lines);
     if (add_current(world, vehicle, lines)) continue;
@@ -315,10 +346,10 @@ std::vector<std::string> unfinished(const PhysicsWorld& world, const PhysicsStat
     if (!vehicle.mission || vehicle.mission->repeats()) continue;
     const VehicleState& now = state.vehicles()[i];
     if (now.mission.piloted != 0) continue;  // somebody else flies it
-    add_unfinished({vehicle.name, vehicle.start.position_ned_m, now.body.position_ned_m,
-                    vehicle.mission->waypoints_ned_m(), vehicle.mission->holds_s(),
-                    speeds_of(world, vehicle), now.mission.arrived},
-                   seconds, lines);
+    Way way = way_of(world, vehicle);
+    way.at_m = now.body.position_ned_m;
+    way.arrived = now.mission.arrived;
+    add_unfinished(way, seconds, lines);
   }
   for (std::size_t i = 0; i < world.humans().size(); ++i) {
     const PhysicsHuman& human = world.humans()[i];

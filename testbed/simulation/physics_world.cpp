@@ -104,6 +104,9 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
   if (world->sources_.size() >= SampleInbox::kMaxSources)
     return bad_input("{}: inputs of {} live sources; accepted: up to {}", scene.path,
                      world->sources_.size(), SampleInbox::kMaxSources - 1);
+  if (world->tethers_.any())
+    if (const Status long_enough = world->tethers_.check_lengths(world->start()); !long_enough.ok())
+      return bad_input("{}: {}", scene.path, long_enough.error().message);
   return std::unique_ptr<const PhysicsWorld>(std::move(world));
 }
 

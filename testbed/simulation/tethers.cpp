@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/refusal.hpp"
 #include "engine/sim/grip.hpp"
 #include "rov/frames.hpp"
 
@@ -15,6 +16,10 @@ constexpr double kLeastContactRadius_m = 0.01;
 constexpr double kMostEscape_m = 0.005;
 // Farther, nothing is met in a step, unless it moves faster than this in one.
 constexpr double kMargin_m = 0.02, kMostMargin_m = 0.5;
+
+// Length over that without pull, at most, at the start: a line that is longer would throw its
+// vehicle.
+constexpr double kMostStrain = 1.01;
 
 // The mass of a body at a place of it, against a push there: the inverse of
 // [1, -[r]x] M^-1 [1, -[r]x]^T, world axes.
@@ -85,6 +90,7 @@ Result<Tethers> Tethers::create(const scene::Scene& scene, const Movers& movers)
     if (!dynamics || !dynamics->tether) continue;
     const scene::Tether& settings = *dynamics->tether;
     PhysicsTether tether{
+        .name = scene.objects[i].name,
         .vehicle = static_cast<std::size_t>(movers.vehicle_of_object[i]),
         .object = settings.object,
         .cable = cable_of(settings, scene.physics->water_kg_m3),
@@ -97,6 +103,18 @@ Result<Tethers> Tethers::create(const scene::Scene& scene, const Movers& movers)
     out.all_.push_back(std::move(tether));
   }
   return out;
+}
+
+Status Tethers::check_lengths(const PhysicsState& start) const {
+  for (std::size_t i = 0; i < all_.size(); ++i) {
+    const TetherState& tether = start.tethers()[i];
+    const double away_m = glm::distance(tether.top_ned_m, tether.end_ned_m);
+    if (away_m > kMostStrain * tether.length_m)
+      return refusal(
+          fmt::format("{}: tether.length_m", all_[i].name), fmt::format("{:g}", tether.length_m),
+          fmt::format("{:.4g} metres or more, from its top to the vehicle at the start", away_m));
+  }
+  return {};
 }
 
 std::span<const rov::CableNode> Tethers::nodes(const PhysicsState& state, std::size_t index) const {

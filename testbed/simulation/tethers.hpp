@@ -10,6 +10,7 @@
 namespace neritic::testbed {
 
 struct PhysicsTether {
+  std::string name;         // its vehicle's
   std::size_t vehicle = 0;  // of PhysicsState::vehicles()
   std::size_t object = 0;   // of the scene, as which it is drawn
   rov::Cable cable;
@@ -42,6 +43,9 @@ class Tethers {
   const std::vector<PhysicsTether>& all() const { return all_; }
   std::size_t node_count() const { return nodes_; }
   std::span<const rov::CableNode> nodes(const PhysicsState& state, std::size_t tether) const;
+
+  // Refuses, in one line, a tether too short for its vehicle's start.
+  Status check_lengths(const PhysicsState& start) const;
 
   // At rest as in still water, and on what is solid.
   void start(const sim::StaticWorld& solid, PhysicsState& state) const;

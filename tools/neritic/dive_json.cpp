@@ -81,6 +81,8 @@ nlohmann::json vehicle_json(const PhysicsVehicle& vehicle, const VehicleState& s
           {"shallowest_m", figures.shallowest_m},
           {"deepest_m", figures.deepest_m},
           {"refused_inputs", state.body.refused_inputs},
+          {"battery_charge", number_or_null(figures.battery_charge)},
+          {"battery_empty_from_s", number_or_null(figures.battery_empty_from_s)},
           {"navigation", vehicle.navigation ? "measured" : "truth"},
           {"navigation_error_m", number_or_null(figures.navigation_error_m)},
           {"largest_navigation_error_m", number_or_null(figures.largest_navigation_error_m)},

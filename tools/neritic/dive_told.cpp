@@ -34,6 +34,10 @@ std::string vehicle_line(const PhysicsVehicle& vehicle, const VehicleState& stat
   if (figures.largest_navigation_error_m)
     line += fmt::format("navigation off by up to {:.2f} m ({:.2f} m at the end), ",
                         *figures.largest_navigation_error_m, *figures.navigation_error_m);
+  if (figures.battery_empty_from_s)
+    line += fmt::format("BATTERY EMPTY from {:.1f} s on, ", *figures.battery_empty_from_s);
+  else if (figures.battery_charge)
+    line += fmt::format("battery at {:.0f} %, ", 100.0 * *figures.battery_charge);
   line += touch_words(state.contact.touched_steps);
   if (state.body.refused_inputs > 0)
     line += fmt::format(", {} inputs refused", state.body.refused_inputs);

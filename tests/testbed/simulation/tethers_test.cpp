@@ -60,6 +60,26 @@ TEST(SceneTether, ItHangsAsACatenaryAndTheVehicleHoldsAgainstItsPull) {
   EXPECT_EQ(tether(dive).unconverged, 0u);
 }
 
+// Such a line would throw the vehicle at its top.
+TEST(SceneTether, OneThatDoesNotReachItsVehicleIsRefused) {
+  const auto told = [](const std::string& keys) {
+    const test::ScratchFolder scratch;
+    EXPECT_TRUE(
+        write_text(scratch / "s.toml", kStillWater + rov_text(at_text("[0, -4, -20]") + kStation +
+                                                              "tether = { " + keys + " }\n"))
+            .ok());
+    const auto scene = scene::load_scene(scratch / "s.toml");
+    if (!scene.ok()) return scene.error().message;
+    const auto world = PhysicsWorld::create(*scene);
+    return world.ok() ? std::string() : world.error().message;
+  };
+  EXPECT_EQ(told("from_m = [0, -4, 0], length_m = 20"), "");
+  EXPECT_THAT(told("from_m = [0, -4, 0], length_m = 19"),
+              HasSubstr("rov: tether.length_m: found 19; accepted: 20 metres or more"));
+  EXPECT_THAT(told("from_m = [0, 0, 0], from = \"rov\", length_m = 20"),
+              HasSubstr("tether.from: found \"rov\"; accepted: another object than the vehicle"));
+}
+
 TEST(SceneTether, AtItsEndItHoldsTheVehicleBack) {
   TestDive dive = dive_of(
       kStillWater +

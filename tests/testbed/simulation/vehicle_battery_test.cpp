@@ -1,6 +1,8 @@
 // Vehicles with a battery in a scene: what it bounds, where it ends, and who reads it.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "testbed/simulation/mission_outlook.hpp"
 #include "testbed/simulation/output_samples.hpp"
 #include "tests/testbed/simulation/dives.hpp"
 
@@ -46,6 +48,21 @@ TEST(VehicleBattery, EmptyItFeedsNoThruster) {
   EXPECT_LT(dive.speed_m_s(), 0.15 * fastest_m_s);
   for (const double command : dive.vehicle().command_n) EXPECT_EQ(command, 0.0);
   EXPECT_EQ(dive.vehicle().mission.arrived, 0u);
+}
+
+TEST(VehicleBattery, OneThatCannotLastIsToldBeforeTheDive) {
+  const auto told = [](const std::string& battery) {
+    std::string out;
+    for (const std::string& line : cannot_hold(*flight(battery).world)) out += line;
+    return out;
+  };
+  // 200 m at 0.5 m/s with 20 W: 400 s take 2.22 Wh.
+  EXPECT_EQ(told("capacity_wh = 2.3\n"), "");
+  EXPECT_EQ(told("capacity_wh = 2.2\n"),
+            "rov: its battery's 2.2 Wh are gone before the 400 s of its way are: its electronics "
+            "alone draw 20 W");
+  EXPECT_THAT(told("charge = 0\n"), testing::HasSubstr("0 Wh are gone"));
+  EXPECT_EQ(told(""), "");
 }
 
 TEST(VehicleBattery, ItsVoltageBoundsTheThrustOfATable) {
