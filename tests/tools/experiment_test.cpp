@@ -147,7 +147,8 @@ TEST(Experiment, RefusesBadScenariosInOneLine) {
   with("[experiment]\nkind = \"echo_sounder\"\nrun = 3\n", "runs (the nearest)");
   with("[experiment]\nkind = \"echo_sounder\"\n[vary]\nslope_deg = [3.0, 1.0]\n",
        "the lower number first");
-  with("[experiment]\nkind = \"echo_sounder\"\n[factors]\nslope_deg = []\n", "a list of levels");
+  with("[experiment]\nkind = \"echo_sounder\"\n[factors]\nslope_deg = []\n",
+       "found an empty list; accepted: a list of one level or more");
   with("[experiment]\nkind = \"echo_sounder\"\n[[criteria]]\nmeasure = \"rmse\"\n",
        "criteria[0].measure");
   // Values of a kind that the key does not have.

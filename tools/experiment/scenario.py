@@ -67,7 +67,7 @@ def check_keys(where, table, accepted):
 
 
 def _words(value):
-    return json.dumps(value, default=str) if not isinstance(value, (dict, list)) else ("a table" if isinstance(value, dict) else "a list")
+    return json.dumps(value, default=str) if not isinstance(value, (dict, list)) else ("a table" if isinstance(value, dict) else "a list" if value else "an empty list")
 
 
 def _number(where, value, low, high, whole=False):
@@ -180,7 +180,7 @@ class Scenario:
 
     def _levels(self, key, value):
         if not isinstance(value, list) or not value:
-            raise Refused(f"{self.path}: factors.{key}: found {_words(value)}; accepted: a list of levels")
+            raise Refused(f"{self.path}: factors.{key}: found {_words(value)}; accepted: a list of one level or more")
         levels = [self.kind.SETTINGS[key].check(f"{self.path}: factors.{key}", v) for v in value]
         if len(set(levels)) < len(levels):
             raise Refused(f"{self.path}: factors.{key}: found a level twice; accepted: levels that differ")

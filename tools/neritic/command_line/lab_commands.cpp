@@ -38,7 +38,7 @@ void add_serve(CLI::App& app, CommandLine& line) {
   command->add_flag("--no-shared-memory", flags->no_shared_memory,
                     "sends arrays as frames, also to clients on this machine");
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
-  command->add_flag("--validation", flags->validation, "checks every Vulkan call; slow");
+  command->add_flag("--validate", flags->validation, "runs with Vulkan validation; slow");
   command->callback([flags, &line] {
     flags->quiet = line.quiet;
     line.run = [flags] { return nothing_to_say(run_serve(*flags)); };
@@ -65,11 +65,12 @@ void add_simulate(CLI::App& app, CommandLine& line) {
                          "sends what a lab's devices send: those of a scene's [sources], on a "
                          "simulated swimmer, or recordings (docs/devices.md)");
   command
-      ->add_option("what", flags->what,
-                   "suit, strap, jacket, microphone, gaze or a source's name, one or more: sends to a "
-                   "dive that runs elsewhere. lab: a dive with all of its devices in simulated "
-                   "time. flood: a dive that gets --rate packets a second. latency: measures the "
-                   "time from a suit's packet to the picture that shows it")
+      ->add_option(
+          "what", flags->what,
+          "suit, strap, jacket, microphone, gaze or a source's name, one or more: sends to a "
+          "dive that runs elsewhere. lab: a dive with all of its devices in simulated "
+          "time. flood: a dive that gets --rate packets a second. latency: measures the "
+          "time from a suit's packet to the picture that shows it")
       ->required();
   command->add_option("--scene", flags->scene, "scene with [sources]")->capture_default_str();
   command->add_option("--to", flags->to,
@@ -150,14 +151,17 @@ void add_experiment(CLI::App& app, CommandLine& line) {
       ->add_option("--out", flags->out,
                    "folder for runs.jsonl, runs.csv, results.json, report.html")
       ->required();
-  command->add_option("--runs", flags->runs, "runs of each condition, in place of the scenario's");
+  command->add_option("--runs", flags->runs, "runs of each condition, in place of the scenario's")
+      ->check(between(1, 1000000));
   command->add_option("--seed", flags->seed, "seed of the first run, in place of the scenario's")
       ->check(seed_number);
   command->add_option("--set", flags->set,
                       "KEY=VALUE: a setting in place of the scenario's; a list [A, B] makes "
                       "conditions; may be repeated");
-  command->add_option("--workers", flags->workers,
-                      "number of runs at the same time; 0: as many as cores");
+  command
+      ->add_option("--workers", flags->workers,
+                   "number of runs at the same time; 0: as many as cores")
+      ->check(between(0, 1024));
   command->add_flag("--resume", flags->resume, "keeps the finished runs that are in --out");
   command->add_flag("--json", flags->json, "prints JSON on standard output");
   command->footer("Example: neritic experiment echo_sounder --out out/echo --set slope_deg=[0,8]");
