@@ -5,7 +5,7 @@ import noise as N
 
 PAINT, RUST, DARK, ORANGE = (0.38, 0.40, 0.40), (0.44, 0.25, 0.15), (0.27, 0.17, 0.12), (0.60, 0.35, 0.17)
 CRUST, ALGAE, SILT = (0.60, 0.58, 0.50), (0.33, 0.38, 0.22), (0.70, 0.64, 0.52)
-OYSTER, SPONGE, MUSSEL = (0.84, 0.80, 0.72), (0.66, 0.30, 0.14), (0.19, 0.17, 0.14)
+OYSTER, SPONGE, MUSSEL = (0.76, 0.72, 0.64), (0.66, 0.30, 0.14), (0.19, 0.17, 0.14)
 
 
 def corroded(n, seed, paint=0.5):
@@ -42,9 +42,9 @@ def growth(n, metres, col, height, where):
     mottle = 0.16 * N.spectral(n, 85, 1.0, 60) + 0.14 * twice(N.spectral(n // 2, 86, 1.8, 12, 120))
     for count, seed, least, most, low, high, field in (
         (7000, 81, 0.010, 0.055, MUSSEL, (0.36, 0.32, 0.23), where - 0.15),
-        (9000, 82, 0.007, 0.045, (0.54, 0.50, 0.42), OYSTER, where + 0.15),
+        (12000, 82, 0.006, 0.036, (0.48, 0.44, 0.37), OYSTER, where - 0.05),
         (420, 83, 0.03, 0.11, (0.40, 0.15, 0.09), SPONGE, where - 0.1),
-        (500, 84, 0.03, 0.10, (0.30, 0.31, 0.17), (0.56, 0.52, 0.34), where - 0.05),
+        (900, 84, 0.03, 0.12, (0.30, 0.31, 0.17), (0.56, 0.52, 0.34), where - 0.05),
     ):
         cover, dome, tone = N.bumps(n, metres, count, seed, least, most, field, 1.3 * mottle)
         col = col * darker(cover, 4.0)[..., None]
@@ -105,7 +105,7 @@ def hull(n=2048, length=8.0, girth=7.0):
     col = N.mix(col, SILT, silt * 0.75)
     height = height * (1 - 0.5 * silt)
     rough = np.clip(rough + 0.12 * silt, 0, 1)
-    settled = N.smooth(-0.5, 1.7, noise(45, 2.3, 2, 60) + 0.5 * N.smooth(0.75, 0.25, v))
+    settled = N.smooth(-0.4, 1.3, noise(45, 2.0, 3, 60) + 0.3 * N.smooth(0.75, 0.25, v))
     col, height = growth(n, length, col, height, settled)
     # limber holes of the casing: openings into the dark, behind a lip of plate, with edges that growth narrows
     ragged = 0.007 * noise(46, 2.4, 16, 300)
