@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/random.hpp"
 #include "engine/render/snow_field.hpp"
 #include "shared/bubble.h"
 
@@ -36,6 +37,24 @@ double pixels_at_a_metre(const ViewSet& views) {
   return most;
 }
 
+constexpr double kLeastShare = 0.25;  // of the smallest spots
+
+// Leaves some of the spots out that are smaller than so many pixels, always the same of each size,
+// and lets the others have their light.
+void thin_out(std::vector<shared::Particle>& particles, double spot_px, double pixels) {
+  std::erase_if(particles, [&](shared::Particle& particle) {
+    const double range_m = std::max(1e-3, double(glm::length(particle.position)));
+    const double own_px = particle.radius_m * pixels / range_m;
+    if (!(own_px < spot_px)) return false;
+    const double share = std::max(own_px / spot_px, kLeastShare);
+    // The lowest byte of a bubble's seed turns with its swing.
+    const std::uint64_t of_it = mix64((particle.seed >> 8) + (std::uint64_t{particle.kind} << 32));
+    if (static_cast<double>(of_it) * 0x1p-64 >= share) return true;
+    particle.opacity = static_cast<float>(particle.opacity / share);
+    return false;
+  });
+}
+
 }  // namespace
 
 std::vector<WorldParticle> snow_around(const scene::Snow& snow, std::uint64_t seed,
@@ -52,7 +71,7 @@ bool has_particles(const scene::Scene& scene) {
 
 ViewParticles view_particles(const scene::MotionSource& motion, SnowField& field,
                              std::uint64_t seed, const ViewSet& views, double time_s,
-                             double snow_share) {
+                             double snow_share, double spot_px) {
   ViewParticles out;
   // The phase of bubbles' wobble now, in 256ths of a turn.
   const double swings = time_s * shared::kWobble_hz;
@@ -93,6 +112,7 @@ ViewParticles view_particles(const scene::MotionSource& motion, SnowField& field
   for (const Drawn& some : drawn)
     out.particles.insert(out.particles.end(), placed.begin() + std::ptrdiff_t(some.first),
                          placed.begin() + std::ptrdiff_t(some.first + some.count));
+  if (spot_px > 0.0) thin_out(out.particles, spot_px, pixels_at_a_metre(views));
   return out;
 }
 

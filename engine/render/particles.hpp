@@ -47,9 +47,11 @@ struct ViewParticles {
   double shutter_s = 0.0;
 };
 bool has_particles(const scene::Scene& scene);
-// field: the snow's cells, kept from call to call.
+// field: the snow's cells, kept from call to call. spot_px: those of a smaller radius in the
+// picture are drawn in part (at least a quarter of them), each as much more opaque; 0: all are
+// drawn.
 ViewParticles view_particles(const scene::MotionSource& motion, SnowField& field,
                              std::uint64_t seed, const ViewSet& views, double time_s,
-                             double snow_share = 1.0);
+                             double snow_share = 1.0, double spot_px = 0.0);
 
 }  // namespace neritic::render

@@ -1,5 +1,8 @@
 #include "engine/xr/compositor.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "engine/core/check.hpp"
 #include "shaders.hpp"
 #include "shared/panel.h"
@@ -106,6 +109,18 @@ AllCorners corners_of(const PanelLayer& panel, const ViewGroup& group,
   return out;
 }
 
+// Whether a panel fills the picture of the only view, to a hundredth of a pixel.
+bool fills(const shared::PanelCorners& panel, const VkExtent2D& extent) {
+  const float near =
+      0.02f * panel.middle.w / static_cast<float>(std::max(extent.width, extent.height));
+  const auto is = [near](const Vec4f& a, float x, float y, float w) {
+    return std::abs(a.x - x) < near && std::abs(a.y - y) < near && std::abs(a.w - w) < near;
+  };
+  const float w = panel.middle.w;
+  return w > 0.0f && is(panel.middle, 0.0f, 0.0f, w) && is(panel.right, w, 0.0f, 0.0f) &&
+         is(panel.up, 0.0f, -w, 0.0f);
+}
+
 struct DrawnPanel {
   ImageHandle image;
   AllCorners corners;
@@ -117,7 +132,12 @@ struct PanelsData {
   std::vector<DrawnPanel> panels;
 };
 
-void record_panels(const PanelsData& data, const gpu::Pipeline& pipeline, VkSampler sampler,
+// texels: of panels that lie texel on pixel.
+struct PanelPipelines {
+  const gpu::Pipeline *filtered, *texels;
+};
+
+void record_panels(const PanelsData& data, const PanelPipelines& pipelines, VkSampler sampler,
                    std::uint32_t views, graph::PassContext& context) {
   const gpu::Image& image = context.image(data.target);
   VkRenderingAttachmentInfo color{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
@@ -141,8 +161,12 @@ void record_panels(const PanelsData& data, const gpu::Pipeline& pipeline, VkSamp
   vkCmdSetScissor(cmd, 0, 1, &scissor);
   vkCmdSetCullMode(cmd, VK_CULL_MODE_NONE);
   vkCmdSetFrontFace(cmd, VK_FRONT_FACE_COUNTER_CLOCKWISE);
-  context.commands.bind_pipeline(pipeline);
-  for (const DrawnPanel& panel : data.panels)
+  for (const DrawnPanel& panel : data.panels) {
+    const gpu::ImageDesc& desc = context.image(panel.image).desc();
+    const bool texels = views == 1 && desc.width == extent.width && desc.height == extent.height &&
+                        fills(panel.corners[0], extent);
+    const gpu::Pipeline& pipeline = texels ? *pipelines.texels : *pipelines.filtered;
+    context.commands.bind_pipeline(pipeline);
     for (const PanelPart& part : panel.parts) {
       AllCorners corners = panel.corners;
       for (shared::PanelCorners& view : corners)
@@ -155,6 +179,7 @@ void record_panels(const PanelsData& data, const gpu::Pipeline& pipeline, VkSamp
            gpu::bound_texture(shared::kPanelTexture, context.image(panel.image).view(), sampler)});
       vkCmdDraw(cmd, 4, 1, 0, 0);
     }
+  }
   vkCmdEndRendering(cmd);
 }
 
@@ -188,8 +213,8 @@ Result<std::unique_ptr<Compositor>> Compositor::create(gpu::Device& device, VkFo
   return made;
 }
 
-Result<const gpu::Pipeline*> Compositor::pipeline_for(std::uint32_t views) {
-  const auto found = pipelines_.find(views);
+Result<const gpu::Pipeline*> Compositor::pipeline_for(std::uint32_t views, bool texels) {
+  const auto found = pipelines_.find({views, texels});
   if (found != pipelines_.end()) return &found->second;
   gpu::GraphicsPipelineDesc desc;
   desc.name = fmt::format("display panels, {} views", views);
@@ -201,8 +226,9 @@ Result<const gpu::Pipeline*> Compositor::pipeline_for(std::uint32_t views) {
   desc.color_formats = {format_};
   desc.blend = gpu::Blend::kAlphaOver;
   desc.view_mask = views > 1 ? (1u << views) - 1 : 0;
+  desc.constants = {{shared::kSpecPanelTexels, texels}};
   NERITIC_TRY(gpu::Pipeline pipeline, gpu::Pipeline::create(device_, desc));
-  return &pipelines_.emplace(views, std::move(pipeline)).first->second;
+  return &pipelines_.emplace(std::pair(views, texels), std::move(pipeline)).first->second;
 }
 
 Result<ImageHandle> Compositor::declare(graph::FrameGraph& graph, const std::string& name,
@@ -219,7 +245,9 @@ Result<ImageHandle> Compositor::declare(graph::FrameGraph& graph, const std::str
     if (const auto* panel = std::get_if<PanelLayer>(&layer))
       panels.push_back({panel->image, corners_of(*panel, group, world_from_head), panel->parts});
   if (panels.empty()) return target;
-  NERITIC_TRY(const gpu::Pipeline* const pipeline, pipeline_for(views));
+  PanelPipelines pipelines{};
+  NERITIC_TRY(pipelines.filtered, pipeline_for(views, false));
+  NERITIC_TRY(pipelines.texels, pipeline_for(views, true));
   return graph
       .add_pass<PanelsData>(
           name + " panels",
@@ -229,8 +257,8 @@ Result<ImageHandle> Compositor::declare(graph::FrameGraph& graph, const std::str
             data.panels = std::move(panels);
             data.target = builder.write(target, Access::kColorAttachment);
           },
-          [this, pipeline, views](const PanelsData& data, graph::PassContext& context) {
-            record_panels(data, *pipeline, sampler_.handle(), views, context);
+          [this, pipelines, views](const PanelsData& data, graph::PassContext& context) {
+            record_panels(data, pipelines, sampler_.handle(), views, context);
           })
       .target;
 }

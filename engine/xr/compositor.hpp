@@ -35,11 +35,12 @@ class Compositor {
 
  private:
   Compositor(gpu::Device& device, VkFormat format) : device_(device), format_(format) {}
-  Result<const gpu::Pipeline*> pipeline_for(std::uint32_t views);
+  Result<const gpu::Pipeline*> pipeline_for(std::uint32_t views, bool texels);
   gpu::Device& device_;
   VkFormat format_;
   gpu::Sampler sampler_;
-  std::map<std::uint32_t, gpu::Pipeline> pipelines_;  // by number of views
+  // By number of views, and whether panels lie texel on pixel.
+  std::map<std::pair<std::uint32_t, bool>, gpu::Pipeline> pipelines_;
 };
 
 }  // namespace neritic::xr

@@ -17,5 +17,8 @@ NERITIC_CONST uint kImguiUv = 1;
 NERITIC_CONST uint kImguiColor = 2;
 NERITIC_CONST uint kImguiTexture = 0;  // binding
 
+// Specialisation constant: triangles of one colour, which need no texture.
+NERITIC_CONST uint kSpecImguiPlain = 0;
+
 NERITIC_SHARED_END
 #endif

@@ -22,5 +22,9 @@ NERITIC_CONST uint kMaxPanelViews = 4;  // of one group
 NERITIC_CONST uint kPanelCorners = 0;  // PanelCorners[kMaxPanelViews]
 NERITIC_CONST uint kPanelTexture = 1;
 
+// Specialisation constant: the texture covers the picture texel on pixel, so that nothing is
+// filtered. On a CPU a filtered sample costs several times as much.
+NERITIC_CONST uint kSpecPanelTexels = 0;
+
 NERITIC_SHARED_END
 #endif

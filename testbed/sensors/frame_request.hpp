@@ -47,6 +47,14 @@ struct CameraPicture {
   const std::vector<glm::dvec2>* map = nullptr;  // lens_map(), where arrays come to the host
 };
 
+// Terms that a view set does without, whatever its detail says: what a governor gives up on a
+// machine that is too slow. No camera's file names these.
+struct Thrift {
+  bool forward_scatter = true;  // false: far outlines stay sharp
+  double spot_px = 0.0;         // render::view_particles
+  double mesh_error_px = 0.0;   // meshes may differ by at least so many pixels; not in shadows
+};
+
 // A view set that is no camera of the scene: a window's, a headset's views, the sides of a cube.
 // One multiview pass draws all its views.
 struct ViewsRequest {
@@ -57,6 +65,7 @@ struct ViewsRequest {
   scene::PictureDetail detail = {};  // what the camera's file says, or a governor
   Capture capture = kColorOnGpu;
   std::optional<CameraPicture> camera = {};  // absent: a pinhole's
+  Thrift thrift = {};
 };
 
 struct FrameRequest {

@@ -220,12 +220,14 @@ Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::str
   NERITIC_TRY(shared::Lighting lighting,
               render::make_lighting(frame.scene, frame.state, views.origin_m(), request.exposure,
                                     frame.gpu_scene.has_emission()));
+  if (!request.thrift.forward_scatter) lighting.terms &= ~shared::kLightForwardScatter;
   NERITIC_TRY(const render::LightImages light,
               declare_light(frame, prefix, g, views, draws, detail, work, lighting));
   // Once for all bands: the passes borrow them until the graph has run.
   if (render::has_particles(frame.scene))
-    work.particles = render::view_particles(frame.motion, frame.snow, frame.scene.seed, views,
-                                            frame.state.time_s, detail.particles);
+    work.particles =
+        render::view_particles(frame.motion, frame.snow, frame.scene.seed, views,
+                               frame.state.time_s, detail.particles, request.thrift.spot_px);
   NERITIC_TRY(graph::ImageHandle hdr,
               request.camera && request.camera->terms.spectrum
                   ? declare_spectrum(frame, prefix, g, views, draws, request, work, lighting, light)
@@ -319,7 +321,8 @@ Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::str
     NERITIC_TRY(
         g, declare(prefix, surface ? render::GBufferKind::kSurface : render::GBufferKind::kShape,
                    work.views, work.draws, surface ? render::GBufferParts{} : parts_of(capture),
-                   arrays ? 0.0 : mesh_error_px(request.detail)));
+                   arrays ? 0.0
+                          : std::max(mesh_error_px(request.detail), request.thrift.mesh_error_px)));
     out.depth = g.depth;
     out.normal = g.normal;
     out.label = g.label;

@@ -149,7 +149,7 @@ PanelFacts Console::facts(graph::FrameGraph& graph, const ConsoleFrame& frame) {
                    .pace = pace_words(options_.clock),
                    .width = frame.group.width,
                    .height = frame.group.height,
-                   .view_scale = frame.view_scale,
+                   .given_up = given_up(frame.quality),
                    .time_s = frame.time_s,
                    .speed_m_s = frame.choice.eye().speed_m_s(),
                    .participants = rows_,
@@ -180,7 +180,7 @@ void Console::add_on_demand(graph::FrameGraph&, const ConsoleFrame& frame, Panel
   }
   if (!options_.physics) return;
   numbers_.look(options_.physics->world(), options_.physics->shown_snapshot(),
-                frame.times.frame().smooth_ms, frame.view_scale);
+                frame.times.frame().smooth_ms, frame.quality.view_scale);
   if (graphs_.names.empty() && show_graphs_ && !numbers_.all().empty())
     graphs_.names.push_back(numbers_.all().front().name);
   const auto& vehicles = options_.physics->world().vehicles();

@@ -20,6 +20,7 @@
 #include "testbed/view/dive_pilot.hpp"
 #include "testbed/view/dive_times.hpp"
 #include "testbed/view/picker.hpp"
+#include "testbed/view/quality_governor.hpp"
 #include "testbed/view/run_keeper.hpp"
 #include "testbed/view/run_numbers.hpp"
 #include "testbed/view/view_memory.hpp"
@@ -42,7 +43,8 @@ struct ConsoleFrame {
   const ViewChoice& choice;
   const DivePilot& pilot;
   const DiveTimes& times;
-  double elapsed_s = 0.0, time_s = 0.0, view_scale = 1.0;
+  double elapsed_s = 0.0, time_s = 0.0;
+  Quality quality;
   TakenCorner taken;  // by a diver's instrument, pixels
   // The picture of the camera that inset() names; empty: it is not drawn in this frame.
   graph::ImageHandle inset;

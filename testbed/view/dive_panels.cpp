@@ -226,8 +226,8 @@ void recording_line(const std::string& text) {
 
 std::size_t status_lines(const PanelFacts& facts) {
   const auto& all = facts.participants;
-  return 3 + (facts.recording.empty() ? 0 : 1) + facts.troubles.size() + 2 * facts.devices.size() +
-         (all.empty() ? 0 : all.size() + 1) +
+  return 3 + facts.given_up.size() + (facts.recording.empty() ? 0 : 1) + facts.troubles.size() +
+         2 * facts.devices.size() + (all.empty() ? 0 : all.size() + 1) +
          static_cast<std::size_t>(
              std::ranges::count_if(all, [](const auto& row) { return !row.doing.empty(); }));
 }
@@ -240,15 +240,13 @@ void draw_status(const PanelFacts& facts, const PanelsShown& shown, const PanelR
   const std::string rate =
       frame_ms > 0.0 ? fmt::format("{:.1f} FPS   {:.1f} ms a frame", 1000.0 / frame_ms, frame_ms)
                      : "first frame";
-  const std::string drawn =
-      facts.view_scale < 1.0 ? fmt::format("   drawn at {:.0f} %", 100.0 * facts.view_scale) : "";
   text_line(fmt::format("{}   {} x {}", rate, facts.width, facts.height));
   text_line(fmt::format("time {:.1f} s{}{}", facts.time_s,
                         facts.pace.empty() ? "" : "   " + facts.pace,
                         facts.water.empty() ? "" : "   water " + facts.water));
-  text_line(fmt::format("view {}{}{}", facts.view,
-                        facts.view == "free" ? fmt::format(", {:.2f} m/s", facts.speed_m_s) : "",
-                        drawn));
+  text_line(fmt::format("view {}{}", facts.view,
+                        facts.view == "free" ? fmt::format(", {:.2f} m/s", facts.speed_m_s) : ""));
+  for (const std::string& line : facts.given_up) text_line(line);
   participants_table(facts, scale);
   ImGui::PushTextWrapPos(0.0f);
   for (const std::string& line : facts.troubles) text_line(line);

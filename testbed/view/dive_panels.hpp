@@ -43,7 +43,7 @@ struct InsetPanel {
 struct PanelFacts {
   std::string title, water, view, pace;  // water empty: none; pace: that of the clock
   std::uint32_t width = 0, height = 0;
-  double view_scale = 1.0;               // of the view's resolution, where the machine is too slow
+  std::vector<std::string> given_up;     // a line each, where the machine is too slow
   double time_s = 0.0, speed_m_s = 0.0;  // of the scene; of the free view
   std::vector<SonarPanel> sonars;        // that have pinged
   std::vector<ParticipantRow> participants;

@@ -52,7 +52,6 @@ Result<std::unique_ptr<DiveView>> DiveView::create(Session& session, xr::Display
   if (options.hud)
     view->hud_ = std::make_unique<DiveHud>(session.device(), session.frames(), *physics,
                                            *options.hud, options.devices);
-  if (options.budget_ms > 0.0) view->governor_.emplace(options.budget_ms);
   return view;
 }
 
@@ -73,7 +72,18 @@ Result<xr::FrameVerdict> DiveView::begin_frame() {
   elapsed_s_ = last_frame_ns_ == 0 ? 0.0 : 1e-9 * static_cast<double>(now - last_frame_ns_);
   if (last_frame_ns_ != 0 && shown()) times_.add_frame(elapsed_s_ * 1e3, now);
   last_frame_ns_ = shown() ? now : 0;  // a pause is no slow frame
+  if (shown() && !governor_ && options_.budget_ms > 0.0) govern();
   return frame_.verdict;
+}
+
+// From the first frame that is shown: only then the size of the views is known.
+void DiveView::govern() {
+  double pixels = 0.0;
+  for (const xr::ViewGroup& group : frame_.groups)
+    pixels +=
+        static_cast<double>(group.width) * group.height * static_cast<double>(group.views.size());
+  const bool cpu = session_.device().info().kind == "CPU";
+  governor_.emplace(options_.budget_ms, cpu ? first_rung_on_cpu(pixels) : 0);
 }
 
 // The lab's frame where the scene says where that lies; else the eyes of the diver who is worn;
@@ -191,7 +201,7 @@ void DiveView::keep_run(const DiveInput& input) {
 }
 
 std::uint32_t DiveView::ping_every() const {
-  return governor_ ? governor_->quality().ping_every : 1;
+  return quality().ping_every;
 }
 
 // Pause, one frame on, a speed of kSpeeds.
@@ -220,11 +230,11 @@ void DiveView::add_views(FrameRequest& request) {
   const bool tracked = frame_.world_from_head.has_value();
   for (std::size_t i = 0; i < frame_.groups.size(); ++i) {
     const xr::ViewGroup& group = frame_.groups[i];
-    ViewsRequest views{
-        .name = i == 0 ? camera.name : fmt::format("{} {}", camera.name, i),
-        .exposure = camera.exposure,
-        .antialias = camera.antialias,
-        .detail = detail_at(camera.detail, governor_ ? governor_->quality().light : 0)};
+    ViewsRequest views{.name = i == 0 ? camera.name : fmt::format("{} {}", camera.name, i),
+                       .exposure = camera.exposure,
+                       .antialias = camera.antialias,
+                       .detail = detail_at(camera.detail, quality().light),
+                       .thrift = thrift_at(quality().light)};
     const double scale = view_scale();
     timeline_.current().view_scale = scale;
     views.views.width = scaled(group.width, scale);
@@ -276,6 +286,7 @@ Status DiveView::declare_sonars(graph::FrameGraph& graph, const SensorFrame& fra
 Status DiveView::declare(graph::FrameGraph& graph, const SensorFrame& frame, double time_s,
                          bool last) {
   NERITIC_TRY_STATUS(declare_sonars(graph, frame));
+  pinged_ = !frame.sonars.empty();
   if (!shown()) return {};
   std::vector<xr::Layer> layers;
   // A display takes depth of its own size only.
@@ -311,7 +322,7 @@ Status DiveView::declare(graph::FrameGraph& graph, const SensorFrame& frame, dou
                                                              .times = times_,
                                                              .elapsed_s = elapsed_s_,
                                                              .time_s = time_s,
-                                                             .view_scale = view_scale(),
+                                                             .quality = quality(),
                                                              .taken = taken,
                                                              .inset = inset}));
     if (panels) layers.push_back(*panels);
@@ -335,7 +346,7 @@ Status DiveView::end_frame(std::optional<std::uint64_t> value) {
   NERITIC_TRY(const std::uint64_t completed, session_.frames().completed());
   NERITIC_TRY_STATUS(collect_times(completed));
   if (value) {
-    in_flight_.push_back(*value);
+    in_flight_.push_back({*value, pinged_});
     screenshots_.submitted(*value);
     picker_.submitted(*value);
   }
@@ -352,32 +363,34 @@ Status DiveView::end_frame(std::optional<std::uint64_t> value) {
 Status DiveView::await_device() {
   const std::size_t ahead = display_.paces_device() ? 1 : 0;
   if (options_.overlap || in_flight_.size() <= ahead) return {};
-  return session_.frames().wait(in_flight_[in_flight_.size() - 1 - ahead]);
+  return session_.frames().wait(in_flight_[in_flight_.size() - 1 - ahead].value);
 }
 
 Status DiveView::collect_times(std::uint64_t completed) {
-  for (; !in_flight_.empty() && in_flight_.front() <= completed; in_flight_.pop_front()) {
-    NERITIC_TRY_STATUS(session_.frames().wait(in_flight_.front()));  // it is done: no wait
-    const std::vector<gpu::PassTime> passes = session_.frames().pass_times_of(in_flight_.front());
+  for (; !in_flight_.empty() && in_flight_.front().value <= completed; in_flight_.pop_front()) {
+    const auto [value, pinged] = in_flight_.front();
+    NERITIC_TRY_STATUS(session_.frames().wait(value));  // it is done: no wait
+    const std::vector<gpu::PassTime> passes = session_.frames().pass_times_of(value);
     times_.add_passes(passes, now_ns());
-    if (options_.timeline) timeline_.passes_of(in_flight_.front(), passes);
-    if (governor_ && shown()) add_work(passes);
+    if (options_.timeline) timeline_.passes_of(value, passes);
+    if (governor_ && shown()) add_work(passes, pinged);
   }
   return {};
 }
 
 // A device that is the host's processor does its work in the host's time, any other beside it.
-void DiveView::add_work(std::span<const gpu::PassTime> passes) {
+void DiveView::add_work(std::span<const gpu::PassTime> passes, bool pinged) {
   double host_ms = 0.0, device_ms = 0.0;
   for (const gpu::PassTime& pass : passes) (pass.name == "record" ? host_ms : device_ms) += pass.ms;
   const bool one = session_.device().info().kind == "CPU";
-  governor_->add(elapsed_s_ * 1e3, one ? host_ms + device_ms : std::max(host_ms, device_ms));
+  governor_->add(elapsed_s_ * 1e3, one ? host_ms + device_ms : std::max(host_ms, device_ms),
+                 pinged);
 }
 
 Status DiveView::finish() {
   if (!in_flight_.empty()) {
-    NERITIC_TRY_STATUS(session_.frames().wait(in_flight_.back()));
-    NERITIC_TRY_STATUS(collect_times(in_flight_.back()));
+    NERITIC_TRY_STATUS(session_.frames().wait(in_flight_.back().value));
+    NERITIC_TRY_STATUS(collect_times(in_flight_.back().value));
   }
   return screenshots_.finish();
 }

@@ -94,10 +94,12 @@ class DiveView final : public FrameView {
   void add_inset(FrameRequest& request, const scene::MotionSource& motion) const;
   void keep_run(const DiveInput& input);
   void tell(const std::string& note);
-  double view_scale() const { return governor_ ? governor_->quality().view_scale : 1.0; }
+  Quality quality() const { return governor_ ? governor_->quality() : Quality{}; }
+  double view_scale() const { return quality().view_scale; }
   Status await_device();
   Status collect_times(std::uint64_t completed);
-  void add_work(std::span<const gpu::PassTime> passes);
+  void govern();
+  void add_work(std::span<const gpu::PassTime> passes, bool pinged);
 
   Session& session_;
   xr::Display& display_;
@@ -121,7 +123,12 @@ class DiveView final : public FrameView {
   bool in_frame_ = false;
   TimeNs last_frame_ns_ = 0;  // 0: none, or it was hidden
   double elapsed_s_ = 0.0;
-  std::deque<std::uint64_t> in_flight_;  // submissions whose times are not collected yet
+  bool pinged_ = false;  // sonars are drawn in this frame
+  struct Flight {
+    std::uint64_t value;
+    bool pinged;
+  };
+  std::deque<Flight> in_flight_;  // submissions whose times are not collected yet
   DiveTimes times_;
   mutable FrameTimeline timeline_;  // sync() says when the recording ended
 };

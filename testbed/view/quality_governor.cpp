@@ -1,27 +1,18 @@
 #include "testbed/view/quality_governor.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 namespace neritic::testbed {
 namespace {
 
-constexpr std::array<Quality, 16> kRungs{{{1.0, 1, 0},
-                                          {0.9, 1, 0},
-                                          {0.8, 1, 0},
-                                          {0.8, 1, 1},
-                                          {0.7, 1, 1},
-                                          {0.6, 1, 1},
-                                          {0.6, 2, 2},
-                                          {0.5, 2, 2},
-                                          {0.42, 2, 2},
-                                          {0.42, 4, 3},
-                                          {0.35, 4, 3},
-                                          {0.3, 4, 3},
-                                          {0.26, 4, 3},
-                                          {0.23, 4, 3},
-                                          {0.2, 4, 3},
-                                          {0.2, 8, 3}}};
+constexpr std::array<Quality, kRungs> kAll{
+    {{1.0, 1, 0},  {0.9, 1, 0},  {0.8, 1, 0},   {0.8, 1, 1},  {0.7, 1, 1},  {0.6, 1, 1},
+     {0.6, 2, 2},  {0.5, 2, 2},  {0.5, 4, 3},   {0.45, 4, 3}, {0.45, 8, 4}, {0.42, 8, 4},
+     {0.39, 8, 4}, {0.36, 8, 4}, {0.335, 8, 4}, {0.31, 8, 4}, {0.29, 8, 4}, {0.27, 8, 4},
+     {0.25, 8, 4}, {0.23, 8, 4}, {0.21, 8, 4},  {0.2, 16, 4}}};
 
 // The knobs of the levels of light; the first leaves the camera its own.
 const std::array<scene::PictureDetail, kLightLevels> kLight{{{},
@@ -52,10 +43,27 @@ const std::array<scene::PictureDetail, kLightLevels> kLight{{{},
                                                               .waves = 8,
                                                               .scatter_levels = 2,
                                                               .shaft_samples = 0.34,
-                                                              .particles = 0.25}}};
+                                                              .particles = 0.25},
+                                                             {.shadow_size = 0.25,
+                                                              .cascades = 1,
+                                                              .shadow_samples = 1,
+                                                              .visibility_step = 4,
+                                                              .occlusion_samples = 0.125,
+                                                              .inscatter_samples = 1,
+                                                              .waves = 4,
+                                                              .scatter_levels = 2,
+                                                              .shaft_samples = 0.25,
+                                                              .particles = 0.2}}};
+
+const std::array<Thrift, kLightLevels> kThrift{
+    {{},
+     {},
+     {},
+     {.spot_px = 0.4},
+     {.forward_scatter = false, .spot_px = 0.8, .mesh_error_px = 4.0}}};
 
 // A guess of a level's cost beside the best: it steers how far a step goes, and misses correct it.
-constexpr std::array<double, kLightLevels> kLightCost{1.0, 0.75, 0.6, 0.5};
+constexpr std::array<double, kLightLevels> kLightCost{1.0, 0.75, 0.6, 0.5, 0.42};
 
 constexpr double kMissed = 1.08;  // of the budget: slower is a miss
 constexpr double kFarOver = 3.0;
@@ -69,6 +77,10 @@ double cost(const Quality& quality) {
   return quality.view_scale * quality.view_scale * kLightCost[quality.light];
 }
 
+// At the last level of light: what two cores draw in 50 ms.
+constexpr double kPixelsOnCpu = 1.0e5;
+constexpr double kPingSmoothing = 0.3;  // share of a new ping
+
 double middle(std::array<double, 5> values) {
   std::nth_element(values.begin(), values.begin() + 2, values.end());
   return values[2];
@@ -77,7 +89,7 @@ double middle(std::array<double, 5> values) {
 }  // namespace
 
 std::span<const Quality> quality_rungs() {
-  return kRungs;
+  return kAll;
 }
 
 scene::PictureDetail detail_at(const scene::PictureDetail& camera, std::uint32_t light) {
@@ -97,13 +109,40 @@ scene::PictureDetail detail_at(const scene::PictureDetail& camera, std::uint32_t
   return out;
 }
 
-void QualityGovernor::add(double interval_ms, double work_ms) {
+Thrift thrift_at(std::uint32_t light) {
+  return kThrift.at(light);
+}
+
+std::vector<std::string> given_up(const Quality& quality) {
+  std::vector<std::string> lines;
+  if (quality.view_scale < 1.0 || quality.ping_every > 1)
+    lines.push_back(fmt::format(
+        "drawn at {:.0f} %{}", 100.0 * quality.view_scale,
+        quality.ping_every > 1 ? fmt::format("   1 ping of {}", quality.ping_every) : ""));
+  if (quality.light > 0)
+    lines.push_back(
+        fmt::format("light {} of {} lower{}", quality.light, kLightLevels - 1,
+                    thrift_at(quality.light).forward_scatter ? "" : ", no forward scatter"));
+  return lines;
+}
+
+std::size_t first_rung_on_cpu(double pixels) {
+  const auto fits = [&](const Quality& q) {
+    return pixels * cost(q) <= kPixelsOnCpu * kLightCost.back();
+  };
+  const auto found = std::ranges::find_if(kAll, fits);
+  return static_cast<std::size_t>(std::min(found, kAll.end() - 1) - kAll.begin());
+}
+
+void QualityGovernor::add(double interval_ms, double work_ms, bool pinged) {
   if (!(std::isfinite(interval_ms) && interval_ms > 0.0 && work_ms > 0.0)) return;
   on_rung_s_ += interval_ms * 1e-3;
+  ++since_ping_;
   if (skip_ > 0) {
     --skip_;
     return;
   }
+  if (pinged && usual_ms_ > 0.0) return add_ping(interval_ms);
   interval_ms_[frames_ % kFrames] = interval_ms;
   work_ms_[frames_ % kFrames] = std::min(work_ms, interval_ms);
   ++frames_;
@@ -113,36 +152,53 @@ void QualityGovernor::add(double interval_ms, double work_ms) {
     return;
   }
   if (frames_ < kFrames) return;
-  const double interval = middle(interval_ms_);
+  usual_ms_ = middle(interval_ms_);
+  const double interval = usual_ms_ + ping_ms_;
   if (interval > kMissed * budget_ms_) {
     go_down(interval);
   } else {
     if (climbed_ && on_rung_s_ > kSettled_s) wait_s_[rung_] = 1.0;  // it holds
-    go_up(middle(work_ms_));
+    go_up(middle(work_ms_) + ping_ms_);
   }
+}
+
+// A sonar's frame says nothing of the others.
+void QualityGovernor::add_ping(double interval_ms) {
+  const double beyond_ms = std::min(std::max(interval_ms - usual_ms_, 0.0), 8.0 * budget_ms_);
+  const double share_ms = beyond_ms / static_cast<double>(since_ping_);
+  ping_ms_ += kPingSmoothing * (share_ms - ping_ms_);
+  since_ping_ = 0;
 }
 
 // To the rung whose cost is expected to fit: at least one, and at most three (eight, where frames
 // are far over the budget), since fixed costs make the guess too good.
 void QualityGovernor::go_down(double interval_ms) {
-  if (rung_ + 1 >= kRungs.size()) return;
+  finding_ = false;
+  if (rung_ + 1 >= kAll.size()) return;
   if (climbed_ && on_rung_s_ <= kSettled_s)
     wait_s_[rung_] = std::min(2.0 * wait_s_[rung_], kLongestWait_s);
   const double wanted = cost(quality()) * budget_ms_ / interval_ms;
   const std::size_t reach = interval_ms > kFarOver * budget_ms_ ? 8 : 3;
-  const std::size_t farthest = std::min(rung_ + reach, kRungs.size() - 1);
+  const std::size_t farthest = std::min(rung_ + reach, kAll.size() - 1);
   std::size_t next = rung_ + 1;
-  while (next < farthest && cost(kRungs[next]) > wanted) ++next;
+  while (next < farthest && cost(kAll[next]) > wanted) ++next;
   rung_ = next;
   climbed_ = false;
   forget();
 }
 
 void QualityGovernor::go_up(double work_ms) {
-  if (rung_ == 0 || on_rung_s_ < wait_s_[rung_ - 1]) return;
-  const Quality& better = kRungs[rung_ - 1];
-  if (work_ms * cost(better) / cost(quality()) > kRoom * budget_ms_) return;
+  const double now = cost(quality());
+  const auto has_room = [&](std::size_t rung) {
+    return work_ms * cost(kAll[rung]) / now <= kRoom * budget_ms_;
+  };
+  if (rung_ == 0 || !(finding_ || on_rung_s_ >= wait_s_[rung_ - 1])) return;
+  if (!has_room(rung_ - 1)) {
+    finding_ = false;
+    return;
+  }
   --rung_;
+  while (finding_ && rung_ > 0 && has_room(rung_ - 1)) --rung_;
   climbed_ = true;
   forget();
 }

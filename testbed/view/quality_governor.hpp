@@ -7,8 +7,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "engine/scene/picture_detail.hpp"
+#include "testbed/sensors/frame_request.hpp"
 
 namespace neritic::testbed {
 
@@ -19,23 +22,35 @@ struct Quality {
   friend bool operator==(const Quality&, const Quality&) = default;
 };
 
-inline constexpr std::uint32_t kLightLevels = 4;
+inline constexpr std::uint32_t kLightLevels = 5;
+inline constexpr std::size_t kRungs = 22;
 
 // Best first: some of the view's resolution, then the knobs of light and water, then the sonars'
-// rates, and so on in turn.
+// rates, and so on in turn; all of light and water before the last of the resolution.
 std::span<const Quality> quality_rungs();
 
 // A camera's knobs at a level of light: none finer than the camera has it.
 scene::PictureDetail detail_at(const scene::PictureDetail& camera, std::uint32_t light);
+// And what is left out there.
+Thrift thrift_at(std::uint32_t light);
+// What is less than the best, in words for a person, a line each; none: nothing is.
+std::vector<std::string> given_up(const Quality& quality);
+
+// Where a machine without a graphics card begins with pictures of so many pixels: two cores draw
+// that in time. The whole picture first, and the way down from it, would be seconds of a slide
+// show.
+std::size_t first_rung_on_cpu(double pixels);
 
 class QualityGovernor {
  public:
-  // budget_ms: of a frame, above 0.
-  explicit QualityGovernor(double budget_ms) : budget_ms_(budget_ms) {}
+  // budget_ms: of a frame, above 0. rung: where it begins.
+  explicit QualityGovernor(double budget_ms, std::size_t rung = 0)
+      : budget_ms_(budget_ms), rung_(rung), finding_(rung > 0) {}
 
   // One frame that was seen. interval_ms: since the frame before; work_ms: the time that host and
-  // device were busy with it, at most the interval. Values that are no time above 0 are left out.
-  void add(double interval_ms, double work_ms);
+  // device were busy with it, at most the interval. pinged: sonars were drawn in it; what it took
+  // longer is counted as if all frames shared it. Values that are no time above 0 are left out.
+  void add(double interval_ms, double work_ms, bool pinged = false);
 
   const Quality& quality() const { return quality_rungs()[rung_]; }
   std::size_t rung() const { return rung_; }
@@ -44,20 +59,25 @@ class QualityGovernor {
  private:
   static constexpr std::size_t kFrames = 5;  // a decision's: the middle one counts
   void forget();
+  void add_ping(double interval_ms);
   void go_down(double interval_ms);
   void go_up(double work_ms);
 
   double budget_ms_;
-  std::size_t rung_ = 0;
+  std::size_t rung_;
+  bool finding_;  // the first climb, over as many rungs as have room, without waiting
   std::array<double, kFrames> interval_ms_{}, work_ms_{};
   std::size_t frames_ = 0, skip_ = 3;  // the first frames make pipelines
   double on_rung_s_ = 0.0;
+  double usual_ms_ = 0.0;       // the last decision's frame without a ping; 0: none was made
+  double ping_ms_ = 0.0;        // a frame's share of pings
+  std::size_t since_ping_ = 0;  // frames
   // Each rung's wait before a climb to it.
-  std::array<double, 16> wait_s_ = filled(1.0);
+  std::array<double, kRungs> wait_s_ = filled(1.0);
   bool climbed_ = false;  // the last change was a climb
 
-  static constexpr std::array<double, 16> filled(double value) {
-    std::array<double, 16> out{};
+  static constexpr std::array<double, kRungs> filled(double value) {
+    std::array<double, kRungs> out{};
     for (double& x : out) x = value;
     return out;
   }

@@ -212,6 +212,37 @@ TEST(Snow, AViewGetsTheGrainsInItsSight) {
             glm::length(Vec3(seen.particles.back().position)));
 }
 
+// A quarter at least stays; what stays has the light of all, and is the same whatever the time.
+TEST(Snow, SmallSpotsAreThinnedOutAndKeepTheirLight) {
+  scene::Scene scene;
+  scene.water.emplace();
+  scene.water->snow = scene::Snow{.density_m3 = 3000.0, .range_m = 2.5};
+  const scene::MotionSource motion(scene);
+  ViewDesc view;
+  view.world_from_view.position_m = Vec3(3.0, -9.0, 1.0);
+  view.tangents = {-1.0, 1.0, -1.0, 1.0};
+  const ViewSet views{.width = 200, .height = 200, .views = {view}};
+  SnowField field;
+  const auto seen = [&](double spot_px) {
+    return view_particles(motion, field, 7, views, 2.0, 1.0, spot_px).particles;
+  };
+  const auto light = [](const std::vector<shared::Particle>& particles) {
+    double sum = 0.0;
+    for (const shared::Particle& p : particles)
+      sum += p.opacity * p.radius_m * p.radius_m / glm::dot(p.position, p.position);
+    return sum;
+  };
+  const auto all = seen(0.0), some = seen(0.5), least = seen(1e9);
+  EXPECT_LT(some.size(), all.size());
+  EXPECT_LT(least.size(), some.size() + 1);
+  EXPECT_NEAR(double(least.size()), 0.25 * double(all.size()), 0.03 * double(all.size()));
+  EXPECT_NEAR(light(some), light(all), 0.1 * light(all));
+  EXPECT_NEAR(light(least), light(all), 0.1 * light(all));
+  std::set<std::uint32_t> looks;
+  for (const shared::Particle& p : some) looks.insert(p.seed);
+  for (const shared::Particle& p : least) EXPECT_TRUE(looks.contains(p.seed));
+}
+
 TEST(Snow, IsFiniteFarOutAndNoneIsAboveTheWater) {
   for (const double x : {0.0, 1e7, -4e7})
     for (const double y : {0.0, -0.01, -1000.0, 100.0})

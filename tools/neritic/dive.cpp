@@ -177,7 +177,9 @@ std::string unasked_hud(const Screen& screen) {
 
 // The wanted time of a frame, ms; 0: quality stays full, whatever a frame takes.
 double frame_budget_ms(const DiveFlags& flags, const Screen& screen) {
-  constexpr double kSoftware_ms = 50.0, kUsualRefresh_hz = 60.0, kHeadsetRefresh_hz = 90.0;
+  // 20 pictures a second with room for what a governor lets pass
+  // (testbed/view/quality_governor.cpp).
+  constexpr double kSoftware_ms = 46.0, kUsualRefresh_hz = 60.0, kHeadsetRefresh_hz = 90.0;
   if (flags.quality.empty() ? flags.headless : flags.quality == "full") return 0.0;
   const double hz = screen.window ? screen.window->refresh_hz() : flags.refresh_hz;
   const double usual_hz = screen.headset ? kHeadsetRefresh_hz : kUsualRefresh_hz;

@@ -37,52 +37,103 @@ void set_style(float scale) {
   style.ScaleAllSizes(scale);
 }
 
-bool meet(const PanelPart& a, const PanelPart& b) {
-  return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
-}
+// Side of the squares by which drawn_parts tells what is clear.
+constexpr int kPartCell_px = 16;
 
-PanelPart around(const PanelPart& a, const PanelPart& b) {
-  return {std::min(a.left, b.left), std::min(a.top, b.top), std::max(a.right, b.right),
-          std::max(a.bottom, b.bottom)};
-}
-
-// Adds a part to disjoint ones; those that meet become one.
-void add_part(std::vector<PanelPart>& parts, PanelPart part) {
-  for (auto met = parts.begin(); met != parts.end();) {
-    if (meet(*met, part)) {
-      part = around(*met, part);
-      parts.erase(met);
-      met = parts.begin();
-    } else {
-      ++met;
-    }
-  }
-  parts.push_back(part);
-}
-
-// In whole pixels: the vertices of each command, within what it is clipped to.
+// Rectangles of whole pixels that hold all triangles: cells of a net that some triangle's box
+// touches, in rows, rows that are alike joined.
 std::vector<PanelPart> drawn_parts(const ImDrawData& data) {
   const float width = data.DisplaySize.x, height = data.DisplaySize.y;
-  std::vector<PanelPart> parts;
+  const int columns = static_cast<int>(std::ceil(width / kPartCell_px));
+  const int rows = static_cast<int>(std::ceil(height / kPartCell_px));
+  std::vector<char> touched(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  const auto cell = [&](int x, int y) -> char& {
+    return touched[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
+                   static_cast<std::size_t>(x)];
+  };
+  const auto place = [](float pixel, int cells) {
+    return std::clamp(static_cast<int>(std::floor(pixel / kPartCell_px)), 0, cells - 1);
+  };
   for (int n = 0; n < data.CmdListsCount; ++n) {
     const ImDrawList& list = *data.CmdLists[n];
-    for (const ImDrawCmd& command : list.CmdBuffer) {
-      ImVec2 least(width, height), most(0.0f, 0.0f);
-      for (unsigned int i = 0; i < command.ElemCount; ++i) {
-        const ImDrawIdx index = list.IdxBuffer[static_cast<int>(command.IdxOffset + i)];
-        const ImVec2 at = list.VtxBuffer[static_cast<int>(command.VtxOffset + index)].pos;
-        least = {std::min(least.x, at.x), std::min(least.y, at.y)};
-        most = {std::max(most.x, at.x), std::max(most.y, at.y)};
+    for (const ImDrawCmd& command : list.CmdBuffer)
+      for (unsigned int i = 0; i + 2 < command.ElemCount; i += 3) {
+        ImVec2 least(width, height), most(0.0f, 0.0f);
+        for (unsigned int k = 0; k < 3; ++k) {
+          const ImDrawIdx index = list.IdxBuffer[static_cast<int>(command.IdxOffset + i + k)];
+          const ImVec2 at = list.VtxBuffer[static_cast<int>(command.VtxOffset + index)].pos;
+          least = {std::min(least.x, at.x), std::min(least.y, at.y)};
+          most = {std::max(most.x, at.x), std::max(most.y, at.y)};
+        }
+        least = {std::max(least.x, command.ClipRect.x), std::max(least.y, command.ClipRect.y)};
+        most = {std::min(most.x, command.ClipRect.z), std::min(most.y, command.ClipRect.w)};
+        if (!(least.x < most.x && least.y < most.y)) continue;
+        for (int y = place(least.y, rows); y <= place(most.y, rows); ++y)
+          for (int x = place(least.x, columns); x <= place(most.x, columns); ++x) cell(x, y) = 1;
       }
-      const float left = std::floor(std::max({least.x, command.ClipRect.x, 0.0f}));
-      const float top = std::floor(std::max({least.y, command.ClipRect.y, 0.0f}));
-      const float right = std::ceil(std::min({most.x, command.ClipRect.z, width}));
-      const float bottom = std::ceil(std::min({most.y, command.ClipRect.w, height}));
-      if (left < right && top < bottom)
-        add_part(parts, {left / width, top / height, right / width, bottom / height});
-    }
   }
+  std::vector<PanelPart> parts;
+  const auto x_of = [&](int x) { return std::min(float(x * kPartCell_px), width) / width; };
+  const auto y_of = [&](int y) { return std::min(float(y * kPartCell_px), height) / height; };
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x) {
+      if (!cell(x, y)) continue;
+      int end = x;
+      while (end < columns && cell(end, y)) ++end;
+      const auto alike = [&](int row) {
+        for (int k = x; k < end; ++k)
+          if (!cell(k, row)) return false;
+        return (x == 0 || !cell(x - 1, row)) && (end == columns || !cell(end, row));
+      };
+      int below = y;
+      for (; below < rows && alike(below); ++below)
+        for (int k = x; k < end; ++k) cell(k, below) = 0;
+      parts.push_back({x_of(x), y_of(y), x_of(end), y_of(below)});
+      x = end - 1;
+    }
   return parts;
+}
+
+// Indices in a row that one pipeline draws.
+struct Run {
+  unsigned int first = 0, count = 0;
+  bool plain = false;
+};
+
+// Less area than this is not worth a draw command of its own.
+constexpr float kLeastPlain_px2 = 3000.0f;
+
+// A command's triangles in their order: those of one colour apart from textured ones, where they
+// cover enough.
+std::vector<Run> runs_of(const ImDrawList& list, const ImDrawCmd& command, const ImVec2& white) {
+  std::vector<Run> runs;
+  float area_px2 = 0.0f;  // of the last run
+  const auto end_run = [&] {
+    if (runs.empty() || !runs.back().plain || area_px2 >= kLeastPlain_px2) return;
+    runs.back().plain = false;
+    if (runs.size() < 2 || runs[runs.size() - 2].plain) return;
+    runs[runs.size() - 2].count += runs.back().count;
+    runs.pop_back();
+  };
+  for (unsigned int i = 0; i + 2 < command.ElemCount; i += 3) {
+    const ImDrawVert* corners[3];
+    bool plain = true;
+    for (unsigned int k = 0; k < 3; ++k) {
+      const ImDrawIdx index = list.IdxBuffer[static_cast<int>(command.IdxOffset + i + k)];
+      corners[k] = &list.VtxBuffer[static_cast<int>(command.VtxOffset + index)];
+      plain &= corners[k]->uv.x == white.x && corners[k]->uv.y == white.y;
+    }
+    if (runs.empty() || runs.back().plain != plain) {
+      end_run();
+      area_px2 = 0.0f;
+      if (runs.empty() || runs.back().plain != plain) runs.push_back({i, 0, plain});
+    }
+    runs.back().count += 3;
+    const ImVec2 &a = corners[0]->pos, &b = corners[1]->pos, &c = corners[2]->pos;
+    area_px2 += 0.5f * std::abs((b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y));
+  }
+  end_run();
+  return runs;
 }
 
 }  // namespace
@@ -100,7 +151,7 @@ Result<std::unique_ptr<Overlay>> Overlay::create(gpu::Device& device, Window* wi
   set_style(overlay->scale_);
   if (window) overlay->glfw_ = ImGui_ImplGlfw_InitForVulkan(window->handle(), true);
   NERITIC_TRY_STATUS(overlay->create_font());
-  NERITIC_TRY_STATUS(overlay->create_pipeline());
+  NERITIC_TRY_STATUS(overlay->create_pipelines());
   return overlay;
 }
 
@@ -151,7 +202,7 @@ Status Overlay::create_font() {
   return gpu::upload_image(device_, font_, std::as_bytes(texels));
 }
 
-Status Overlay::create_pipeline() {
+Status Overlay::create_pipelines() {
   NERITIC_TRY(sampler_, gpu::Sampler::create(device_, {.name = "overlay",
                                                        .u = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                                        .v = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
@@ -169,6 +220,9 @@ Status Overlay::create_pipeline() {
   desc.color_formats = {kFormat};
   desc.blend = gpu::Blend::kAlphaOver;
   NERITIC_TRY(pipeline_, gpu::Pipeline::create(device_, desc));
+  desc.name = "overlay, plain";
+  desc.constants = {{shared::kSpecImguiPlain, true}};
+  NERITIC_TRY(plain_, gpu::Pipeline::create(device_, desc));
   return {};
 }
 
@@ -250,7 +304,7 @@ void Overlay::draw(graph::PassContext& context, const ImDrawData& data) const {
   gpu::Commands& commands = context.commands;
   const VkCommandBuffer cmd = context.cmd();
   const float width = data.DisplaySize.x, height = data.DisplaySize.y;
-  commands.bind_pipeline(pipeline_);
+  const ImVec2 white = ImGui::GetIO().Fonts->TexUvWhitePixel;
   for (int n = 0; n < data.CmdListsCount; ++n) {
     const ImDrawList& list = *data.CmdLists[n];
     if (list.VtxBuffer.empty() || list.IdxBuffer.empty()) continue;
@@ -274,11 +328,18 @@ void Overlay::draw(graph::PassContext& context, const ImDrawData& data) const {
       shared::ImguiPush push{};
       push.clip_from_pixel = {2.0f / width, 2.0f / height};
       const VkImageView view = bind_texture(context, command.GetTexID(), push.layer);
-      commands.bind(pipeline_,
-                    {gpu::bound_texture(shared::kImguiTexture, view, sampler_.handle())});
-      commands.push(pipeline_, push);
-      vkCmdDrawIndexed(cmd, command.ElemCount, 1, command.IdxOffset,
-                       static_cast<std::int32_t>(command.VtxOffset), 0);
+      const std::vector<Run> runs = command.GetTexID() == nullptr
+                                        ? runs_of(list, command, white)
+                                        : std::vector<Run>{{0, command.ElemCount, false}};
+      for (const Run& run : runs) {
+        const gpu::Pipeline& pipeline = run.plain ? plain_ : pipeline_;
+        commands.bind_pipeline(pipeline);
+        commands.bind(pipeline,
+                      {gpu::bound_texture(shared::kImguiTexture, view, sampler_.handle())});
+        commands.push(pipeline, push);
+        vkCmdDrawIndexed(cmd, run.count, 1, command.IdxOffset + run.first,
+                         static_cast<std::int32_t>(command.VtxOffset), 0);
+      }
     }
   }
 }

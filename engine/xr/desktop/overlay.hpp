@@ -47,7 +47,7 @@ class Overlay {
   };
   explicit Overlay(gpu::Device& device) : device_(device) {}
   Status create_font();
-  Status create_pipeline();
+  Status create_pipelines();
   void record(graph::PassContext& context, graph::ImageHandle target) const;
   void draw(graph::PassContext& context, const ImDrawData& data) const;
   VkImageView bind_texture(graph::PassContext& context, ImTextureID id, std::uint32_t& layer) const;
@@ -59,7 +59,7 @@ class Overlay {
   std::uint32_t width_ = 1, height_ = 1;  // of this frame
   gpu::Image font_;
   gpu::Sampler sampler_;
-  gpu::Pipeline pipeline_;
+  gpu::Pipeline pipeline_, plain_;  // plain: triangles of one colour
   std::vector<PanelPart> drawn_;
   std::vector<Texture> textures_;  // of this frame; ImTextureID is its place plus one, 0: the font
 };

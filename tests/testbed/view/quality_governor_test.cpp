@@ -113,6 +113,54 @@ TEST(QualityGovernor, LightComesDownKnobByKnob) {
   }
 }
 
+// Seconds of a slide show would pass on the way down from the whole picture.
+TEST(QualityGovernor, ACpuBeginsWithAsManyPixelsAsTwoCoresDraw) {
+  const Quality window = quality_rungs()[first_rung_on_cpu(1280.0 * 720.0)];
+  EXPECT_LE(1280.0 * 720.0 * window.view_scale * window.view_scale, 1.3e5);
+  EXPECT_EQ(window.light, kLightLevels - 1);
+  EXPECT_EQ(first_rung_on_cpu(160.0 * 120.0), 0u);
+  EXPECT_EQ(first_rung_on_cpu(1e12), quality_rungs().size() - 1);
+  std::size_t before = 0;
+  for (double pixels = 1.0; pixels < 1e9; pixels *= 1.5) {
+    EXPECT_GE(first_rung_on_cpu(pixels), before);
+    before = first_rung_on_cpu(pixels);
+  }
+}
+
+TEST(QualityGovernor, AFastMachineThatBeganLowIsAtFullQualityWithinTwoSeconds) {
+  QualityGovernor governor(50.0, first_rung_on_cpu(1280.0 * 720.0));
+  Machine{2.0, 8.0, 16.7}.run(governor, 120);
+  EXPECT_EQ(governor.rung(), 0u);
+}
+
+TEST(QualityGovernor, ASlowMachineThatBeganLowStaysNearWhereItBegan) {
+  const std::size_t first = first_rung_on_cpu(1280.0 * 720.0);
+  QualityGovernor governor(50.0, first);
+  Machine{12.0, 300.0}.run(governor, 200);
+  EXPECT_NEAR(double(governor.rung()), double(first), 2.0);
+}
+
+// Nine of ten frames are in time; their mean is not.
+TEST(QualityGovernor, PingsCountByTheirShareOfAllFrames) {
+  const auto rung_after = [](double ping_ms) {
+    QualityGovernor governor(50.0);
+    for (int i = 0; i < 200 && governor.rung() == 0; ++i)
+      governor.add(i % 10 == 0 ? 40.0 + ping_ms : 40.0, 40.0, i % 10 == 0);
+    return governor.rung();
+  };
+  EXPECT_EQ(rung_after(50.0), 0u);
+  EXPECT_GT(rung_after(250.0), 0u);
+}
+
+TEST(QualityGovernor, SaysAllThatItGaveUp) {
+  EXPECT_TRUE(given_up(Quality{}).empty());
+  const auto words = given_up({.view_scale = 0.36, .ping_every = 8, .light = kLightLevels - 1});
+  EXPECT_THAT(words, testing::ElementsAre("drawn at 36 %   1 ping of 8",
+                                          "light 4 of 4 lower, no forward scatter"));
+  EXPECT_THAT(given_up({.view_scale = 0.9}), testing::ElementsAre("drawn at 90 %"));
+  for (const Quality& quality : quality_rungs().subspan(1)) EXPECT_FALSE(given_up(quality).empty());
+}
+
 // Each rung costs no more than the one before it, or it would not help.
 TEST(QualityGovernor, RungsComeDownInOrder) {
   const auto rungs = quality_rungs();
