@@ -38,7 +38,7 @@ void set_style(float scale) {
 }
 
 // Side of the squares by which drawn_parts tells what is clear.
-constexpr int kPartCell_px = 16;
+constexpr int kPartCell_px = 4;
 
 // Rectangles of whole pixels that hold all triangles: cells of a net that some triangle's box
 // touches, in rows, rows that are alike joined.

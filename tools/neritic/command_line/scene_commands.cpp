@@ -186,8 +186,9 @@ void add_dive(CLI::App& app, CommandLine& line) {
   command
       ->add_option("--quality", flags->quality,
                    "auto: if the machine is too slow for its screen (a CPU: for 20 pictures a "
-                   "second), lowers resolution, then shadows, occlusion, waves and scatter, then "
-                   "sonars' rates (default in a window); full: never")
+                   "second), lowers resolution, then shadows, occlusion, waves, scatter and "
+                   "particles, then sonars' rates, and says so in the panel; a CPU begins low "
+                   "(default in a window); full: never")
       ->check(CLI::IsMember({"auto", "full"}));
   command->add_option("--seconds", flags->seconds,
                       "stops after this simulated time (default with --headless: 60 of physics "
