@@ -17,19 +17,27 @@ RandomKey key_of(const NoiseSource& source, std::uint64_t component, Draw draw) 
 
 double random_walk(const RandomKey& key, std::uint64_t steps) {
   if (steps == 0) return 0.0;
+  // As random_normal(key, n), with what all draws share mixed once.
+  const std::uint64_t mixed = mix64(key.frame ^ mix64(key.stream ^ mix64(key.seed)));
+  const auto uniform = [mixed](std::uint64_t index) {
+    return static_cast<double>(mix64(index ^ mixed) >> 11) * 0x1.0p-53;
+  };
+  const auto normal = [&uniform](std::uint64_t n) {
+    return normal_of(uniform(2 * n), uniform(2 * n + 1));
+  };
   // Draw n is the walk's own at step n: an increment up to it, or the bridge's deviation there.
-  double low_value = 0.0, high_value = random_normal(key, 1);
+  double low_value = 0.0, high_value = normal(1);
   std::uint64_t low = 0, high = 1;
   while (high < steps) {
     low = high;
     low_value = high_value;
     high *= 2;
-    high_value += std::sqrt(static_cast<double>(high - low)) * random_normal(key, high);
+    high_value += std::sqrt(static_cast<double>(high - low)) * normal(high);
   }
   while (high != steps) {
     const std::uint64_t middle = low + (high - low) / 2;
     const double deviation = 0.5 * std::sqrt(static_cast<double>(high - low));
-    const double value = 0.5 * (low_value + high_value) + deviation * random_normal(key, middle);
+    const double value = 0.5 * (low_value + high_value) + deviation * normal(middle);
     (middle < steps ? low : high) = middle;
     (middle < steps ? low_value : high_value) = value;
   }

@@ -208,7 +208,7 @@ class Worlds(unittest.TestCase):
 
         thread = threading.Thread(target=count)
         thread.start()
-        world.tick(20000)
+        world.tick(4000)
         done.set()
         thread.join()
         self.assertGreater(counted[0], 10)

@@ -18,6 +18,7 @@ struct QualityCase {
   std::size_t
       shots;  // of the kind's, for time's sake, and fewer rays than the levels were found by
   TruthRays rays;
+  std::uint32_t part = 1;  // of the aperture, with its beams: one by so many
 };
 void PrintTo(const QualityCase& c, std::ostream* out) {
   *out << scene::name_of(c.kind);
@@ -36,6 +37,8 @@ TEST_P(QualityTruth, EachLevelStaysUnderItsBound) {
       *std::ranges::find_if(kinds, [](const auto& k) { return k.base.kind == GetParam().kind; });
   ASSERT_GE(kind.shots.size(), GetParam().shots);
   kind.shots.resize(GetParam().shots);
+  kind.base.azimuth_rad /= GetParam().part;
+  kind.base.bins_azimuth /= GetParam().part;
   KindBench bench(kind);
   NERITIC_ASSERT_STATUS(bench.open(device(), scene));
   std::vector<scene::Sonar> sonars;
@@ -72,11 +75,11 @@ TEST_P(QualityTruth, EachLevelStaysUnderItsBound) {
 
 INSTANTIATE_TEST_SUITE_P(
     Sonar, QualityTruth,
-    ::testing::Values(QualityCase{scene::SonarKind::kImaging, 1, {6.0, 16.0, 2500}},
+    ::testing::Values(QualityCase{scene::SonarKind::kImaging, 1, {6.0, 16.0, 2500}, 2},
                       QualityCase{scene::SonarKind::kProfiling, 1, {8.0, 24.0, 256}},
                       QualityCase{scene::SonarKind::kEchoSounder, 6, {8.0, 24.0, 1024}},
-                      QualityCase{scene::SonarKind::kSideScan, 2, {8.0, 16.0, 8000}},
-                      QualityCase{scene::SonarKind::kMechanical, 2, {48.0, 48.0, 8000}}),
+                      QualityCase{scene::SonarKind::kSideScan, 2, {8.0, 16.0, 4000}},
+                      QualityCase{scene::SonarKind::kMechanical, 2, {32.0, 32.0, 4000}}),
     [](const auto& info) { return std::string(scene::name_of(info.param.kind)); });
 
 }  // namespace

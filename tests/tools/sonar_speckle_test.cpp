@@ -50,6 +50,12 @@ class SpecklePower : public test::GpuTest, public ::testing::WithParamInterface<
                       make_triangle_world(flatten(scene_, 0.0, Pose{-origin_m, Quat(1, 0, 0, 0)})));
     for (KindSetting& kind : kind_settings(scene_, world->cast(Vec3(0, -1, 0)).t))
       if (kind.base.kind == GetParam().kind) kind_ = std::move(kind);
+    // A third of an imaging sonar's beams are bins enough: an error of 0.0037 over all of them by 8
+    // draws is one of 0.0064 over these.
+    if (kind_.base.kind == scene::SonarKind::kImaging && !test::is_thorough()) {
+      kind_.base.azimuth_rad /= 3.0;
+      kind_.base.bins_azimuth /= 3;
+    }
   }
   // Cells alike, the faint as the bright ones; and all power, which the bright ones have.
   void hold(KindBench& bench, scene::Sonar sonar, const char* what) {

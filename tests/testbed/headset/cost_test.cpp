@@ -114,7 +114,7 @@ TEST_F(HeadsetCost, AStereoFrameOfTheWholeDiveTakesLittleOfOneCore) {
   with(*physics);
   with(spent);
   with(DiveHudOptions{.layouts = {hud::LayoutKind::kWrist}});
-  NERITIC_ASSERT_STATUS(dive(scene, 90));
+  NERITIC_ASSERT_STATUS(dive(scene, 60));
   RecordProperty("frame_ms", fmt::format("{:.3f}", spent.frame_ms(12)));
   EXPECT_LT(spent.frame_ms(12), 2.0);
 }

@@ -46,9 +46,9 @@ TEST_F(SonarBits, RunsOfEveryTermGiveTheSameBits) {
     request.capture = request.capture.without_geometry();
     std::string first;
     std::unique_ptr<Session> session;
-    const int runs = std::getenv(kHashFile) ? 1 : test::is_thorough() ? 20 : 6;
+    const int runs = std::getenv(kHashFile) ? 1 : test::is_thorough() ? 20 : 4;
     for (int run = 0; run < runs; ++run) {
-      if (run % 3 == 0) {  // from nothing, then in the memory of the run before
+      if (run % 2 == 0) {  // from nothing, then in the memory of the run before
         NERITIC_ASSERT_OK(session, Session::create(device(), some_sea(sonar)));
       }
       NERITIC_ASSERT_OK(const FrameResult result, session->render(request));

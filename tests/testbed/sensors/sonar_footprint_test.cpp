@@ -220,7 +220,8 @@ TEST_F(SonarFootprint, APoleHasNoHorns) {
 }
 
 // A ball of 25 cm at 3 m anywhere in the wedge is heard from its front, 2.75 m, to where it ends
-// from sight, 2.99 m, and a pixel's step beyond: its top and bottom are no floors that go on.
+// from sight, 2.99 m, and a pixel's step beyond: its top and bottom are no floors that go on. It
+// fills 4.8 degrees to either side: four that lie apart share no column of a picture.
 TEST_F(SonarFootprint, ABallHasNoEchoesBeforeItAndFewBehind) {
   scene::Sonar sonar;
   sonar.range_min_m = 1.0;
@@ -228,26 +229,41 @@ TEST_F(SonarFootprint, ABallHasNoEchoesBeforeItAndFewBehind) {
   sonar.azimuth_rad = radians(90.0);
   sonar.elevation_rad = radians(28.0);
   sonar.bins_range = sonar.bins_azimuth = sonar.bins_elevation = 500;
-  for (const double bearing_deg : {0.0, 10.0, 30.0, 40.0})
-    for (const double up_deg : {0.0, 8.0}) {
-      SCOPED_TRACE(fmt::format("{} {}", bearing_deg, up_deg));
+  constexpr double kBearings_deg[] = {0.0, 10.0, 30.0, 40.0}, kHalfWay_deg = 5.0;
+  const auto ball = std::make_shared<scene::Model>(scene::make_sphere(0.25, 512));
+  for (const double up_deg : {0.0, 8.0}) {
+    scene::Scene scene;
+    scene.models = {ball};
+    for (const double bearing_deg : kBearings_deg) {
       const double b = radians(bearing_deg), e = radians(up_deg);
-      scene::Scene scene;
-      const Vec3 at =
+      scene::Object object;
+      object.name = fmt::format("{}", bearing_deg);
+      object.model = 0;
+      object.mount.pose.position_m =
           3.0 * Vec3(std::sin(b) * std::cos(e), std::sin(e), -std::cos(b) * std::cos(e));
-      scene.objects.push_back(object_of(scene, scene::make_sphere(0.25, 512), at));
-      scene.sonars = {sonar};
-      const SonarFrame frame = ping(device(), scene);
+      object.class_id = 12;
+      object.instance = static_cast<std::uint16_t>(scene.objects.size() + 1);
+      scene.objects.push_back(object);
+    }
+    scene.sonars = {sonar};
+    const SonarFrame frame = ping(device(), scene);
+    for (const double bearing_deg : kBearings_deg) {
+      SCOPED_TRACE(fmt::format("{} {}", bearing_deg, up_deg));
       int first = 500, last = 0;
-      for (std::size_t i = 0; i < frame.image.intensity.size(); ++i) {
-        if (frame.image.intensity[i] == 0.0f) continue;
-        first = std::min(first, static_cast<int>(i / 500));
-        last = std::max(last, static_cast<int>(i / 500));
+      for (std::uint32_t column = 0; column < 500; ++column) {
+        if (std::abs(degrees(frame.grid.azimuth_rad(column)) - bearing_deg) > kHalfWay_deg)
+          continue;
+        for (int row = 0; row < 500; ++row) {
+          if (frame.image.intensity[static_cast<std::size_t>(row) * 500 + column] == 0.0f) continue;
+          first = std::min(first, row);
+          last = std::max(last, row);
+        }
       }
       EXPECT_NEAR(first, 218, 1);
       EXPECT_GE(last, 247);
       EXPECT_LE(last, 262);
     }
+  }
 }
 
 // Half a metre above a floor it is met at half a degree: rings of single bins, if its rows were not

@@ -69,6 +69,36 @@ inline SonarFrame ping(gpu::Device& device, const scene::Scene& scene, std::uint
   return frames.empty() ? SonarFrame{} : std::move(frames.front());
 }
 
+// One session that pings again and again, its first sonar in worlds of other seeds or with other
+// settings: most of a small ping is the session's making.
+class Pinger {
+ public:
+  Pinger(gpu::Device& device, const scene::Scene& scene) {
+    auto session = Session::create(device, scene);
+    if (session.ok())
+      session_ = std::move(*session);
+    else
+      ADD_FAILURE() << session.error().message;
+  }
+  void replace(const scene::Sonar& sonar) {
+    if (session_) session_->replace_sonar(0, sonar);
+  }
+  SonarFrame ping(std::uint64_t seed) {
+    if (!session_) return {};
+    FrameRequest request;
+    request.sonars = {0};
+    request.seed = seed;
+    request.capture = request.capture.without_geometry();
+    auto result = session_->render(request);
+    if (result.ok()) return std::move(result->sonars.front());
+    ADD_FAILURE() << result.error().message;
+    return {};
+  }
+
+ private:
+  std::unique_ptr<Session> session_;
+};
+
 inline double total(const SonarFrame& frame) {
   return std::accumulate(frame.image.intensity.begin(), frame.image.intensity.end(), 0.0);
 }

@@ -159,9 +159,14 @@ TEST_F(SonarPresets, HalfAMetreAboveAFloorItIsWholeAndAsLoudAsItsClosedForm) {
     names.insert(names.end(), {"oculus_m750d_high", "oculus_m1200d", "blueview_p900_45",
                                "aris_explorer_3000_low"});
   for (const char* name : names) {
-    NERITIC_ASSERT_OK(
-        const scene::Scene scene,
-        over_a_flat_bottom(scratch.path(), name, 5.5, "level = { source_level_db = 210 }"));
+    NERITIC_ASSERT_OK(scene::Scene scene, over_a_flat_bottom(scratch.path(), name, 5.5,
+                                                             "level = { source_level_db = 210 }"));
+    // A quarter of the beams, since each is held by itself.
+    scene::Sonar& sonar = scene.sonars[0];
+    if (const std::uint32_t beams = sonar.bins_azimuth / 4; beams > 0 && !test::is_thorough()) {
+      sonar.azimuth_rad *= double(beams) / sonar.bins_azimuth;
+      sonar.bins_azimuth = beams;
+    }
     const auto frames = pings(device(), scene);
     ASSERT_EQ(frames.size(), 1u);
     // Within the half-power width, where the pattern is smooth over sixteen bins.

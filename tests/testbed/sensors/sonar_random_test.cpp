@@ -106,10 +106,9 @@ double speckled_over_smooth(gpu::Device& device, double distance_m, std::uint32_
   double speckled = 0.0;
   // Near, the wall is few resolution cells deep: the mean of as many more worlds.
   const int seeds = static_cast<int>(std::lround(std::max(4.0, 32.0 / distance_m)));
-  for (int i = 0; i < seeds; ++i) {
-    scene.seed = static_cast<std::uint64_t>(i) + 1;
-    speckled += total(ping(device, scene)) / seeds;
-  }
+  Pinger pinger(device, scene);
+  for (int i = 0; i < seeds; ++i)
+    speckled += total(pinger.ping(static_cast<std::uint64_t>(i) + 1)) / seeds;
   return speckled / smooth;
 }
 
@@ -237,14 +236,19 @@ TEST_F(SonarRandom, SpeckleFadesWithTheWayAcross) {
   scene::Scene plain = scene;
   plain.sonars[0].terms.speckle.reset();
   const SonarFrame smooth = ping(device(), plain);
+  Pinger pinger(device(), scene);
+  const auto powers_at = [&](double x_m) {
+    scene.sonars[0].mount.pose.position_m.x = x_m;
+    pinger.replace(scene.sonars[0]);
+    std::array<std::vector<double>, 5> powers;
+    for (std::size_t i = 0; i < 5; ++i) powers[i] = ratios(smooth, pinger.ping(i + 1)).power;
+    return powers;
+  };
+  const auto home = powers_at(0.0);
   const auto measured = [&](double x_m) {
+    const auto there = powers_at(x_m);
     double sum = 0.0;
-    for (scene.seed = 1; scene.seed <= 5; ++scene.seed) {
-      scene.sonars[0].mount.pose.position_m.x = 0.0;
-      const Ratios here = ratios(smooth, ping(device(), scene));
-      scene.sonars[0].mount.pose.position_m.x = x_m;
-      sum += correlation(here.power, ratios(smooth, ping(device(), scene)).power);
-    }
+    for (std::size_t i = 0; i < 5; ++i) sum += correlation(home[i], there[i]);
     return sum / 5.0;
   };
   for (const double x_m : {0.002, 0.01, 0.02, 0.03, 0.055}) {
@@ -268,7 +272,7 @@ class AlongRange {
  public:
   static constexpr std::uint32_t kBins = 48, kEdge = 8, kColumns = 64, kSeeds = 4;
 
-  AlongRange(gpu::Device& device, bool pulse) : device_(device) {
+  AlongRange(gpu::Device& device, bool pulse) {
     scene::Sonar sonar = sonar_of(4.88, 5.12, kBins);
     sonar.azimuth_rad = radians(16.0);
     sonar.elevation_rad = radians(4.0);
@@ -277,6 +281,7 @@ class AlongRange {
     sonar.terms.water.sound_speed_m_s = 1500.0;
     if (pulse) sonar.terms.range_spread = scene::SonarRangeSpread{.bandwidth_hz = 60e3};
     scene_ = tilted_floor(5.0, sonar);
+    pinger_.emplace(device, scene_);
     home_ = powers_at(0.0);
   }
   // Power over the smooth image's at home and so many bins ahead, a seed after the other; rows
@@ -289,12 +294,13 @@ class AlongRange {
     scene::Sonar& sonar = scene_.sonars[0];
     sonar.mount.pose.position_m = ahead * (bins * 0.24 / kBins);
     sonar.terms.speckle.reset();
-    const SonarFrame smooth = ping(device_, scene_);
+    pinger_->replace(sonar);
+    const SonarFrame smooth = pinger_->ping(0);
     sonar.terms.speckle = scene::SonarSpeckle{};
+    pinger_->replace(sonar);
     Powers out;
     for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
-      scene_.seed = seed + 1;
-      const SonarFrame speckled = ping(device_, scene_);
+      const SonarFrame speckled = pinger_->ping(seed + 1);
       for (std::size_t i = 0; i < smooth.image.intensity.size(); ++i)
         out.bins[seed].push_back(speckled.image.intensity[i] / smooth.image.intensity[i]);
     }
@@ -316,8 +322,8 @@ class AlongRange {
   }
 
  private:
-  gpu::Device& device_;
   scene::Scene scene_;
+  std::optional<Pinger> pinger_;
   Powers home_;
 };
 

@@ -105,13 +105,14 @@ TEST(PhysicsSpeed, InContactItTakesLittleMore) {
     dive.run(20.0);
     const std::uint64_t touched = dive.vehicle().contact.touched_steps,
                         before = dive.simulation->log().steps();
-    const double ms = ms_a_second(dive, dive.world->vehicles()[0].file.sensors, 20.0);
+    constexpr double kLimit_ms = 26.0;  // 16 to 21 on an AMD EPYC
+    const double ms = ms_a_second(dive, dive.world->vehicles()[0].file.sensors, kLimit_ms);
     EXPECT_EQ(dive.vehicle().contact.touched_steps - touched,
               dive.simulation->log().steps() - before);
     RecordProperty(from_m.x > 5.0 ? "sand_ms_a_second" : "deck_ms_a_second",
                    fmt::format("{:.2f}", ms));
     if (test::kFast) {
-      EXPECT_LT(ms, 26.0);  // 16 to 21 on an AMD EPYC
+      EXPECT_LT(ms, kLimit_ms);
     }
   }
 }
