@@ -60,7 +60,7 @@ const std::array<Thrift, kLightLevels> kThrift{
      {},
      {},
      {.spot_px = 0.4},
-     {.forward_scatter = false, .spot_px = 0.8, .mesh_error_px = 4.0}}};
+     {.forward_scatter = false, .spot_px = 0.8, .mesh_error_px = 3.0}}};
 
 // A guess of a level's cost beside the best: it steers how far a step goes, and misses correct it.
 constexpr std::array<double, kLightLevels> kLightCost{1.0, 0.75, 0.6, 0.5, 0.42};
