@@ -31,6 +31,7 @@ struct WaterFlow {
   Vec3 current_m_s{0.0};        // at the step's start
   Vec3 change_m_s2{0.0};        // of the current where the body is, as it moves
   Vec3 acceleration_m_s2{0.0};  // of the water itself, Du/Dt
+  double head_m = 0.0;          // its pressure is that of still water deeper by this much (waves)
 
   WaterFlow() = default;
   WaterFlow(const Vec3& steady_m_s) : current_m_s(steady_m_s) {}

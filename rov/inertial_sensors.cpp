@@ -24,7 +24,8 @@ ImuReading read_imu(const Imu& imu, const Vehicle& vehicle, const State& state, 
 PressureReading read_pressure(const PressureSensor& sensor, const SensorWater& water,
                               const State& state, const NoiseSource& noise, std::uint64_t sample) {
   const Vec3 at = state.position_ned_m + state.attitude * sensor.mount.position_m;
-  double pressure = water.air_pa + water.water_kg_m3 * water.gravity_m_s2 * std::max(0.0, at.z) +
+  double pressure = water.air_pa +
+                    water.water_kg_m3 * water.gravity_m_s2 * std::max(0.0, at.z + water.head_m) +
                     noise.error(sensor.noise, 0, sample, sensor.rate_hz);
   if (sensor.resolution_pa > 0.0)
     pressure = sensor.resolution_pa * std::round(pressure / sensor.resolution_pa);

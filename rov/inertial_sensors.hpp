@@ -39,6 +39,7 @@ ImuReading read_imu(const Imu& imu, const Vehicle& vehicle, const State& state, 
 struct SensorWater {
   double water_kg_m3 = 1028.0, gravity_m_s2 = 9.82;
   double air_pa = 101325.0;
+  double head_m = 0.0;  // of waves: the pressure is that of still water deeper by this much
 };
 
 struct PressureSensor {

@@ -137,17 +137,28 @@ Vec2 SeaWaves::slope(double x_m, double z_m, double time_s) const {
   return slope;
 }
 
-Vec3 SeaWaves::velocity_m_s(const Vec3& point_m, double time_s) const {
-  Vec3 velocity(0.0);
+WaveFlow SeaWaves::flow(const Vec3& point_m, double time_s) const {
+  WaveFlow out;
+  const bool under = point_m.y < 0.0;
   for (const SeaWave& wave : waves_) {
     const double k = glm::length(wave.wave_number_m);
     // Below -700 / k the exponential is 0 in double.
-    const double speed = wave.amplitude_m * wave.angular_s * std::exp(k * std::min(point_m.y, 0.0));
+    const double head = wave.amplitude_m * (under ? std::exp(k * point_m.y) : 1.0);
+    if (head == 0.0) continue;
+    const double speed = head * wave.angular_s;
     const double angle = angle_rad(wave, point_m.x, point_m.z, time_s);
-    const Vec2 level = wave.wave_number_m * (speed * std::cos(angle) / k);
-    velocity += Vec3(level.x, speed * std::sin(angle), level.y);
+    const double cosine = speed * std::cos(angle), sine = speed * std::sin(angle);
+    const Vec2 way = wave.wave_number_m / k;
+    const Vec3 velocity(way.x * cosine, sine, way.y * cosine);
+    const Vec3 by_angle(-way.x * sine, cosine, -way.y * sine);  // d velocity / d angle
+    out.velocity_m_s += velocity;
+    out.rate_m_s2 -= wave.angular_s * by_angle;
+    out.gradient_per_s[0] += wave.wave_number_m.x * by_angle;
+    out.gradient_per_s[2] += wave.wave_number_m.y * by_angle;
+    if (under) out.gradient_per_s[1] += k * velocity;
+    out.head_m += head * std::cos(angle);
   }
-  return velocity;
+  return out;
 }
 
 Vec3 SeaWaves::height_and_slopes(const Vec2& center_m, const Vec2& length_breadth_m,

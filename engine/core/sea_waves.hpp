@@ -29,6 +29,15 @@ struct SeaWave {
 double jonswap(const SeaState& sea, double angular_s);
 double jonswap_peak(const SeaState& sea);  // 1/s
 
+// The water at a point under waves.
+struct WaveFlow {
+  Vec3 velocity_m_s{0.0};
+  Mat3 gradient_per_s{0.0};  // column j: d velocity / d x_j
+  Vec3 rate_m_s2{0.0};       // d velocity / d time, at the point
+  // The pressure is that of still water deeper by this much; at the surface the waves' height.
+  double head_m = 0.0;
+};
+
 class SeaWaves {
  public:
   SeaWaves() = default;  // still water
@@ -39,7 +48,10 @@ class SeaWaves {
   // Slopes of the height along x and z.
   Vec2 slope(double x_m, double z_m, double time_s) const;
   // The water's velocity at a point (Airy); above the surface that at the surface.
-  Vec3 velocity_m_s(const Vec3& point_m, double time_s) const;
+  Vec3 velocity_m_s(const Vec3& point_m, double time_s) const {
+    return flow(point_m, time_s).velocity_m_s;
+  }
+  WaveFlow flow(const Vec3& point_m, double time_s) const;
   // A floating body's place: the mean height over a footprint of this length and breadth, whose
   // long side faces heading_rad, and the slopes along x and z of the plane that fits. Waves much
   // shorter than the footprint do not move it.

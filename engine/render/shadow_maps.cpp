@@ -98,7 +98,8 @@ std::vector<std::uint8_t> moving_objects(const scene::Scene& scene) {
     // With all that carries it.
     const scene::Object* at = &object;
     for (std::size_t steps = 0; at && steps <= scene.objects.size(); ++steps) {
-      moves |= at->mount.track || at->dynamics || at->human || !at->inputs.empty();
+      moves |=
+          at->mount.track || at->mount.afloat || at->dynamics || at->human || !at->inputs.empty();
       at = at->mount.object >= 0 ? &scene.objects[static_cast<std::size_t>(at->mount.object)]
                                  : nullptr;
     }

@@ -1,13 +1,38 @@
 #include "engine/scene/motion.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/core/check.hpp"
 
 namespace neritic::scene {
 namespace {
 
+// Velocities of what floats are differences over twice this time.
+constexpr double kStep_s = 1e-3;
+
+Pose floating(const Mount& mount, double time_s) {
+  const Pose still = mount.pose_at(time_s);
+  const Vec3 ahead = still.rotation * Vec3(0.0, 0.0, -1.0);
+  const Vec3 fit = mount.afloat->waves.height_and_slopes({still.position_m.x, still.position_m.z},
+                                                         mount.afloat->length_breadth_m,
+                                                         std::atan2(ahead.x, -ahead.z), time_s);
+  // The shortest turn of the vertical onto the normal of the fitted plane.
+  const Vec3 normal = glm::normalize(Vec3(-fit.y, 1.0, -fit.z));
+  const Quat tilt = glm::normalize(Quat(1.0 + normal.y, normal.z, 0.0, -normal.x));
+  return {still.position_m + Vec3(0.0, fit.x, 0.0), tilt * still.rotation};
+}
+
+Motion floating_motion(const Mount& mount, double time_s) {
+  const Pose before = floating(mount, time_s - kStep_s), after = floating(mount, time_s + kStep_s);
+  Quat turn = after.rotation * glm::conjugate(before.rotation);
+  if (turn.w < 0.0) turn = -turn;
+  return {floating(mount, time_s), (after.position_m - before.position_m) / (2.0 * kStep_s),
+          Vec3(turn.x, turn.y, turn.z) / kStep_s};
+}
+
 Motion local_motion(const Mount& mount, double time_s) {
+  if (mount.afloat) return floating_motion(mount, time_s);
   if (!mount.track) return {mount.pose};
   return {pose_at(*mount.track, time_s), velocity_at(*mount.track, time_s),
           angular_velocity_at(*mount.track, time_s)};

@@ -40,10 +40,18 @@ inline constexpr ClassName kClasses[] = {
     {"shark", 7},  {"plant", 8}, {"coral", 9}, {"pipe", 10}, {"structure", 11}, {"target", 12}};
 
 // Where something is: in the world, or on an object (then the pose is object_from_this).
+// A hull on the waves: heave, roll and pitch of the plane that fits them over its footprint.
+struct Afloat {
+  SeaState sea;
+  SeaWaves waves;              // of that
+  Vec2 length_breadth_m{0.0};  // along its axis z, and along x
+};
+
 struct Mount {
-  int object = -1;                  // index into Scene::objects; -1: the world
-  Pose pose;                        // of what moves: at time 0
-  std::optional<Track> track = {};  // absent: it stands still there
+  int object = -1;                                 // index into Scene::objects; -1: the world
+  Pose pose;                                       // of what moves: at time 0
+  std::optional<Track> track = {};                 // absent: it stands still there
+  std::shared_ptr<const Afloat> afloat = nullptr;  // null: no waves move it; in the world alone
   Pose pose_at(double time_s) const { return track ? scene::pose_at(*track, time_s) : pose; }
 };
 
@@ -92,6 +100,7 @@ struct Water {
   std::optional<ForwardScatter> forward_scatter = {};
   std::optional<Snow> snow = {};
   std::optional<SeaState> waves = {};  // of the surface; absent: flat
+  bool waves_move = false;             // bodies that physics moves feel them
   std::optional<Murk> murk = {};
   std::optional<WaterColumn> column = {};  // temperature, salinity and their layers
   std::vector<BubbleSource> bubbles = {};

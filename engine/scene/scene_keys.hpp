@@ -38,7 +38,7 @@ inline constexpr auto kForwardScatterKeys = std::to_array<Key>({"angle_deg", "le
 inline constexpr auto kSnowKeys = std::to_array<Key>(
     {"density_m3", "diameter_mm", "spread", "range_m", "drift_m_s", "shutter_s"});
 inline constexpr auto kWavesKeys =
-    std::to_array<Key>({"wind_m_s", "fetch_km", "direction_deg", "components", "seed"});
+    std::to_array<Key>({"wind_m_s", "fetch_km", "direction_deg", "components", "seed", "moves"});
 inline constexpr auto kMurkKeys = std::to_array<Key>({"bed_depth_m", "thickness_m", "factor"});
 inline constexpr auto kBubbleKeys =
     std::to_array<Key>({"on", "position_m", "breath_s", "flow_l_min", "diameter_mm", "height_m"});
@@ -87,6 +87,7 @@ inline constexpr auto kObjectKeys = std::to_array<Key>({"name",
                                                         "copies",
                                                         "copies_file",
                                                         "flock",
+                                                        "afloat",
                                                         "scatter",
                                                         "collision",
                                                         "dynamics",
@@ -166,6 +167,7 @@ inline constexpr auto kStandBetweenKeys = std::to_array<Key>({"a", "b", "distanc
 
 inline constexpr auto kFlockKeys =
     std::to_array<Key>({"count", "kind", "radius_m", "speed_m_s", "seed", "avoid", "avoid_m"});
+inline constexpr auto kAfloatKeys = std::to_array<Key>({"length_m", "breadth_m"});
 inline constexpr auto kScatterKeys =
     std::to_array<Key>({"count", "seed", "area_m", "on", "scale", "align", "sink_m", "keep_out_m"});
 

@@ -257,6 +257,28 @@ std::optional<Flock> read_flock(TableReader& parent, const Scene& scene, double 
   return flock;
 }
 
+std::shared_ptr<const Afloat> read_afloat(TableReader& parent, const Scene& scene) {
+  const TomlValue* table = parent.table("afloat");
+  if (!table) return nullptr;
+  TableReader reader(parent.source(), *table, parent.path("afloat"), kAfloatKeys);
+  Afloat out;
+  const auto size_m = [&](Key key) {
+    if (!reader.has(key)) reader.refuse(key, "its size on the water, in metres");
+    return reader.number(key, 1.0, {0, 1000, true, false, "metres"});
+  };
+  out.length_breadth_m = {size_m("length_m"), size_m("breadth_m")};
+  if (!reader.ok()) parent.fail(reader.status().error());
+  for (const Key key : {"on", "dynamics", "human", "inputs", "thing", "flock"})
+    if (parent.has(key)) parent.refuse(key, "no such key beside afloat");
+  if (!scene.water || !scene.water->waves) {
+    parent.refuse("afloat", "a scene with [water.waves]");
+    return nullptr;
+  }
+  out.sea = *scene.water->waves;
+  out.waves = SeaWaves(out.sea);
+  return std::make_shared<const Afloat>(std::move(out));
+}
+
 ObjectDraft read_object(TableReader& reader, const Scene& scene, const std::string& default_name,
                         std::uint16_t default_class) {
   ObjectDraft draft;
@@ -266,6 +288,7 @@ ObjectDraft read_object(TableReader& reader, const Scene& scene, const std::stri
   object.class_id = read_class(reader, scene, default_class);
   read_acoustics(reader, object);
   draft.placement = read_placement(reader, "");
+  object.mount.afloat = read_afloat(reader, scene);
   object.scale = read_scale(reader);
   draft.clip = reader.text("clip", "");
   draft.place_clip = reader.place("clip");

@@ -171,7 +171,10 @@ void read_water_terms(TableReader& reader, Water& water) {
   water.forward_scatter = read_term<ForwardScatter>(reader, "forward_scatter", kForwardScatterKeys,
                                                     read_forward_scatter);
   water.snow = read_term<Snow>(reader, "snow", kSnowKeys, read_snow);
-  water.waves = read_term<SeaState>(reader, "waves", kWavesKeys, read_waves);
+  water.waves = read_term<SeaState>(reader, "waves", kWavesKeys, [&](TableReader& waves) {
+    water.waves_move = waves.flag("moves", false);
+    return read_waves(waves);
+  });
   water.murk = read_term<Murk>(reader, "murk", kMurkKeys, read_murk);
   water.column = read_column(reader);
   const auto each = [&](Key key, KeyList keys, auto read, auto& out) {

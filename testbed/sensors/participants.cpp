@@ -5,7 +5,7 @@ namespace {
 
 bool moves(const scene::Scene& scene, const scene::Object& object) {
   if (object.dynamics || object.human || !object.inputs.empty() || object.mount.track ||
-      object.clip >= 0)
+      object.mount.afloat || object.clip >= 0)
     return true;
   return object.mount.object >= 0 &&
          moves(scene, scene.objects[static_cast<std::size_t>(object.mount.object)]);

@@ -214,8 +214,11 @@ HumanStep free_human(const PhysicsHuman& human, const DiverInputs& inputs,
   acting.current_change_ned_m_s2 = water.change_m_s2;
   acting.water_acceleration_ned_m_s2 = water.acceleration_m_s2;
   const diver::RootState before = state.human.root;
+  // Under waves the body floats and breathes as where the still water has that pressure.
+  state.human.root.position_ned_m.z += water.head_m;
   state.human =
       diver::step(human.body, state.human, acting, dt_s, diver::kLongestSubstep_s, borrowed);
+  state.human.root.position_ned_m.z -= water.head_m;
   const diver::RootState& after = state.human.root;
   const Mat6 mass = diver::matrix_of(
       diver::momentum_of(human.body, diver::posture_of(human.body, state.human.limbs.rotation, {}),
@@ -250,7 +253,7 @@ bool part_humans(const PhysicsHuman& a, HumanStep& moving_a, const PhysicsHuman&
 }
 
 void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const HumanStep& moving,
-               bool parted, std::uint64_t step, double dt_s, const Ability& able,
+               bool parted, double head_m, std::uint64_t step, double dt_s, const Ability& able,
                sim::ContactMemory& memory, HumanPhysics& state) {
   sim::MotionReport report;
   const sim::BodyMotion moved = sim::move_body(solid, human.shape, moving.inverse_mass,
@@ -267,7 +270,7 @@ void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const H
   const auto since_s = since_sample_s(step, dt_s);
   if (!since_s) return;
   const double sink_m_s = (after.attitude * after.velocity.linear()).z;
-  const double depth_m = after.position_ned_m.z - *since_s * sink_m_s;
+  const double depth_m = after.position_ned_m.z + head_m - *since_s * sink_m_s;
   diver::DiveComputerState& computer = state.human.life.computer;
   // Out of a tank that the diver has not got nothing comes; without any there is the air above.
   const std::uint64_t tank = state.human.held.tank;

@@ -110,8 +110,9 @@ bool part_from_vehicle(const PhysicsHuman& human, HumanStep& moving, const Vehic
 bool part_humans(const PhysicsHuman& a, HumanStep& moving_a, const PhysicsHuman& b,
                  HumanStep& moving_b, double dt_s, sim::PairMemory& memory);
 // Moves along solid things, and samples the dive computer. parted: a moving body was touched.
+// head_m: of waves, at the step's end (diver::WaterFlow).
 void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const HumanStep& moving,
-               bool parted, std::uint64_t step, double dt_s, const Ability& able,
+               bool parted, double head_m, std::uint64_t step, double dt_s, const Ability& able,
                sim::ContactMemory& memory, HumanPhysics& state);
 
 // The drawn diver: the pose of the model, and its nodes' rotations and scales (breath).

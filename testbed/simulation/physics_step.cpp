@@ -175,7 +175,7 @@ PhysicsState PhysicsWorld::step(const PhysicsState& before, const PhysicsInputs&
 StepScratch PhysicsWorld::scratch(unsigned threads) const {
   StepScratch scratch{std::vector<VehicleScratch>(vehicles_.size()),
                       std::vector<HumanScratch>(humans_.size()),
-                      std::vector<Vec3>(things_.things().size(), Vec3(0.0)),
+                      std::vector<ThingWater>(things_.things().size()),
                       {},
                       {},
                       {},
@@ -212,7 +212,7 @@ void PhysicsWorld::step(const PhysicsState& before, const PhysicsInputs& inputs,
     i < humans ? finish_human(call, i, thread) : finish_vehicle(call, i - humans, thread);
   });
   if (things_.any())
-    things_.finish(humans_, solid_, scratch.thing_currents_m_s, water_kg_m3_, time.step_s,
+    things_.finish(humans_, solid_, scratch.thing_waters, water_kg_m3_, time.step_s,
                    scratch.contacts.front(), after);
   if (regulators_ > 0)
     for (std::size_t k = 0; k < humans; ++k)
@@ -226,17 +226,18 @@ void PhysicsWorld::pull_all(const StepCall& call) const {
     const ObjectState& object = call.after.objects()[things_.things()[i].object];
     const ThingState& thing = call.after.things()[i];
     if (thing.rests != 0 || acting(object.groups.front()) == Authority::kLive) continue;
-    Vec3& current_m_s = call.scratch.thing_currents_m_s[i];
+    ThingWater& water = call.scratch.thing_waters[i];
     const Vec3 at_ned_m = rov::ned_from_world(object.motion.pose.position_m);
-    current_m_s = rov::world_from_ned(current_ned_m_s(at_ned_m, call.time.time_s()));
+    const diver::WaterFlow flow = water_ned(at_ned_m, call.time.time_s());
+    water = {rov::world_from_ned(flow.current_m_s), flow.head_m};
     if (washes_)
-      current_m_s +=
+      water.current_m_s +=
           rov::world_from_ned(wash_ned_m_s(vehicles_, call.before, at_ned_m, water_kg_m3_));
     const std::uint64_t holder = thing.holder;
     if (holder == 0) continue;
     const PhysicsGrip& grip = things_.grips()[holder - 1];
     const auto pull = [&](const sim::InverseMass& inverse_mass, sim::BodyMotion& free) {
-      things_.pull(i, humans_, {inverse_mass, free}, current_m_s, water_kg_m3_, call.time.step_s,
+      things_.pull(i, humans_, {inverse_mass, free}, water, water_kg_m3_, call.time.step_s,
                    call.after);
     };
     if (grip.sort == OwnerSort::kVehicle) {
@@ -261,7 +262,7 @@ void PhysicsWorld::step_tethers(const StepCall& call) const {
     sim::PairBody body = pair_body(whole_step(call, vehicle), own.free);
     const Motion before = motion_of(call.before.vehicles()[vehicle]);
     const auto current = [&](const Vec3& at_ned_m) {
-      return current_ned_m_s(at_ned_m, call.time.time_s());
+      return water_ned(at_ned_m, call.time.time_s()).current_m_s;
     };
     if (!tethers_.step(i, solid_, current, call.before, call.time,
                        {body.inverse_mass, rov::world_pose(was.position_ned_m, was.attitude),
@@ -333,7 +334,7 @@ void PhysicsWorld::begin_part(const StepCall& call, std::size_t i) const {
 void PhysicsWorld::begin_human(const StepCall& call, std::size_t k) const {
   const diver::RootState& root = call.before.humans()[k].human.root;
   diver::WaterFlow water =
-      water_along(current_, root.position_ned_m, root.attitude * root.velocity.linear(),
+      water_along(current_, waves_, root.position_ned_m, root.attitude * root.velocity.linear(),
                   call.time.time_s(), call.time.step_s);
   if (washes_)
     water.current_m_s += wash_on_diver_ned_m_s(vehicles_, humans_[k], call.before.humans()[k],
@@ -436,7 +437,11 @@ void PhysicsWorld::finish_vehicle(const StepCall& call, std::size_t i, unsigned 
 
 void PhysicsWorld::finish_human(const StepCall& call, std::size_t k, unsigned thread) const {
   const HumanScratch& own = call.scratch.humans[k];
-  end_human(humans_[k], solid_, own.moving, own.parted, call.time.step, call.time.step_s,
+  const double head_m = waves_ ? water_ned(call.before.humans()[k].human.root.position_ned_m,
+                                           call.time.time_s() + call.time.step_s)
+                                     .head_m
+                               : 0.0;
+  end_human(humans_[k], solid_, own.moving, own.parted, head_m, call.time.step, call.time.step_s,
             ability_of(humans_[k], call.before), call.scratch.contacts[thread],
             call.after.humans()[k]);
 }
@@ -447,9 +452,11 @@ void PhysicsWorld::sense(std::size_t index, const rov::Vec6& contact, double fro
                          PhysicsState& state) const {
   const PhysicsVehicle& vehicle = vehicles_[index];
   if (!vehicle.readings) return;
-  rov::update_readings(vehicle.file.sensors, sensor_world(index), vehicle.vehicle,
-                       state.vehicles()[index].body, contact, from_s, to_s,
-                       state.readings()[*vehicle.readings]);
+  rov::SensorWorld world = sensor_world(index);
+  if (waves_)
+    world.water.head_m = water_ned(state.vehicles()[index].body.position_ned_m, to_s).head_m;
+  rov::update_readings(vehicle.file.sensors, world, vehicle.vehicle, state.vehicles()[index].body,
+                       contact, from_s, to_s, state.readings()[*vehicle.readings]);
 }
 
 rov::SensorWorld PhysicsWorld::sensor_world(std::size_t vehicle) const {

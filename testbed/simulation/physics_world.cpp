@@ -76,6 +76,8 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
   if (scene.current) {
     NERITIC_TRY(world->current_, current_of(*scene.current));
   }
+  if (scene.water && scene.water->waves && scene.water->waves_move)
+    world->waves_.emplace(*scene.water->waves);
   NERITIC_TRY(world->solid_, static_world_of(scene));
   NERITIC_TRY_STATUS(world->choose_step(scene));
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {

@@ -78,7 +78,7 @@ struct HumanScratch {
 struct StepScratch {
   std::vector<VehicleScratch> vehicles;
   std::vector<HumanScratch> humans;
-  std::vector<Vec3> thing_currents_m_s;
+  std::vector<ThingWater> thing_waters;
   TetherScratch tether;
   PairFinder finder;
   sim::PairMemory pair;
@@ -130,6 +130,7 @@ class PhysicsWorld {
   // The streams that enter and leave, and the live sources that the scene names.
   const StreamTable& streams() const { return streams_; }
   const SourceNames& sources() const { return sources_; }
+  // The scene's current, without waves.
   Vec3 current_ned_m_s(const Vec3& position_ned_m, double time_s) const;
   // The newest readings of a vehicle's sensors; null where it has none.
   const rov::SensorReadings* readings(const PhysicsState& state, std::size_t vehicle) const;
@@ -183,6 +184,8 @@ class PhysicsWorld {
   void step_modems(const StepCall& call) const;
   void pull_all(const StepCall& call) const;
   void step_tethers(const StepCall& call) const;
+  // The water's velocity with waves and its head; no accelerations.
+  diver::WaterFlow water_ned(const Vec3& position_ned_m, double time_s) const;
   void start_navigation(std::size_t index, PhysicsState& state) const;
   void navigate(std::size_t index, double time_s, PhysicsState& state) const;
   rov::Inputs acting_on(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
@@ -193,6 +196,7 @@ class PhysicsWorld {
   std::uint64_t seed_ = 0, scene_hash_ = 0;
   StepMethod method_;
   std::optional<sim::Current> current_;
+  std::optional<SeaWaves> waves_;  // that move bodies
   sim::StaticWorld solid_;
   VehicleKinds kinds_;
   std::vector<PhysicsVehicle> vehicles_;

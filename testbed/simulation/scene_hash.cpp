@@ -22,6 +22,7 @@ class SceneHash {
     text(physics.integrator);
     numbers(physics.rate_hz, physics.max_error_m, physics.water_kg_m3, physics.altitude_m);
     if (scene.water && scene.water->column) add(*scene.water->column);
+    if (scene.water && scene.water->waves && scene.water->waves_move) add(*scene.water->waves);
     number(scene.current.has_value());
     if (scene.current) NERITIC_TRY_STATUS(add(*scene.current));
     number(scene.objects.size());
@@ -67,6 +68,11 @@ class SceneHash {
     return file(c.file);
   }
 
+  void add(const SeaState& sea) {
+    text("waves");
+    numbers(sea.wind_m_s, sea.fetch_m, sea.direction_rad);
+    number(sea.components), number(sea.seed);
+  }
   void add(const WaterColumn& column) {
     text("water column");
     numbers(column.temperature_c, column.salinity_psu);
@@ -100,6 +106,11 @@ class SceneHash {
   void add(const scene::Mount& mount) {
     numbers(mount.object);
     vec(mount.pose.position_m), quat(mount.pose.rotation);
+    if (mount.afloat) {
+      text("afloat");
+      add(mount.afloat->sea);
+      numbers(mount.afloat->length_breadth_m.x, mount.afloat->length_breadth_m.y);
+    }
     number(mount.track.has_value());
     if (!mount.track) return;
     number(mount.track->places.size());

@@ -173,7 +173,9 @@ class StaticSceneBuilder {
 }  // namespace
 
 bool stands_still(const scene::Scene& scene, const scene::Object& object) {
-  if (object.mount.track || object.dynamics || object.human || !object.inputs.empty()) return false;
+  if (object.mount.track || object.mount.afloat || object.dynamics || object.human ||
+      !object.inputs.empty())
+    return false;
   return object.mount.object < 0 ||
          stands_still(scene, scene.objects[static_cast<std::size_t>(object.mount.object)]);
 }

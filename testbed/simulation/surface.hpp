@@ -1,5 +1,6 @@
 // The water's surface for a vehicle: what rises out of it is not buoyed up, and thrusters above it
-// push nothing. Flat at depth 0; no waves, and drag stays the water's. Pure function; any thread.
+// push nothing. The surface is level at the vehicle, head_m above still water; drag stays the
+// water's. Pure function; any thread.
 #pragma once
 
 #include "rov/dynamics.hpp"
@@ -11,6 +12,6 @@ namespace neritic::testbed {
 // origin (an upright box), at the centre of buoyancy. Below, inputs stay as they are. top_m >
 // bottom_m.
 void apply_surface(const rov::Vehicle& vehicle, double top_m, double bottom_m,
-                   const rov::State& state, rov::Inputs& inputs);
+                   const rov::State& state, double head_m, rov::Inputs& inputs);
 
 }  // namespace neritic::testbed

@@ -196,15 +196,15 @@ Vec3 fallen(const PhysicsThing& thing, const Vec3& velocity_m_s, const Vec3& cur
 }
 
 void Things::pull(std::size_t index, std::span<const PhysicsHuman> humans, const CarryingBody& body,
-                  const Vec3& current_m_s, double water_kg_m3, double dt_s,
+                  const ThingWater& water, double water_kg_m3, double dt_s,
                   PhysicsState& after) const {
   const PhysicsThing& thing = things_[index];
   const ThingState& state = after.things()[index];
   ObjectState& object = after.objects()[thing.object];
   sim::Held held{on_body_m(grips_[state.holder - 1], humans, after),
-                 fallen(thing, object.motion.velocity_m_s, current_m_s,
+                 fallen(thing, object.motion.velocity_m_s, water.current_m_s,
                         density_at(object.motion.pose.position_m.y, water_kg_m3), dt_s,
-                        wet_share(thing, object.motion.pose.position_m.y)),
+                        wet_share(thing, object.motion.pose.position_m.y - water.head_m)),
                  thing.moving_kg};
   const Vec3 impulse = sim::grip_impulse(body.inverse_mass, body.free, held);
   sim::hold(body.inverse_mass, impulse, dt_s, body.free, held);
@@ -213,7 +213,7 @@ void Things::pull(std::size_t index, std::span<const PhysicsHuman> humans, const
 }
 
 void Things::finish(std::span<const PhysicsHuman> humans, const sim::StaticWorld& solid,
-                    const std::vector<Vec3>& current_m_s, double water_kg_m3, double dt_s,
+                    const std::vector<ThingWater>& waters, double water_kg_m3, double dt_s,
                     sim::ContactMemory& memory, PhysicsState& after) const {
   for (std::size_t i = 0; i < things_.size(); ++i) {
     const PhysicsThing& thing = things_[i];
@@ -234,9 +234,9 @@ void Things::finish(std::span<const PhysicsHuman> humans, const sim::StaticWorld
       continue;
     }
     const Quat& q = motion.pose.rotation;
-    const Vec3 velocity = fallen(thing, motion.velocity_m_s, current_m_s[i],
+    const Vec3 velocity = fallen(thing, motion.velocity_m_s, waters[i].current_m_s,
                                  density_at(motion.pose.position_m.y, water_kg_m3), dt_s,
-                                 wet_share(thing, motion.pose.position_m.y));
+                                 wet_share(thing, motion.pose.position_m.y - waters[i].head_m));
     const sim::Twist twist{glm::conjugate(q) * velocity, Vec3(0.0)};
     const sim::BodyMotion moved =
         sim::move_body(solid, thing.shape, thing.inverse_mass, motion.pose,

@@ -38,6 +38,12 @@ struct CarryingBody {
   sim::BodyMotion& free;
 };
 
+// The water at a thing, world axes.
+struct ThingWater {
+  Vec3 current_m_s{0.0};
+  double head_m = 0.0;  // of waves: the surface lies that much higher
+};
+
 class Things {
  public:
   static Result<Things> create(const scene::Scene& scene, const Movers& movers);
@@ -59,10 +65,10 @@ class Things {
               const PhysicsState& before, PhysicsState& after) const;
   // A thing, which must be held, pulls at its holder; body: of the grip in this step.
   void pull(std::size_t thing, std::span<const PhysicsHuman> humans, const CarryingBody& body,
-            const Vec3& current_m_s, double water_kg_m3, double dt_s, PhysicsState& after) const;
+            const ThingWater& water, double water_kg_m3, double dt_s, PhysicsState& after) const;
   // At the step's end: held things are where their grip is, free ones fall among what is solid.
   void finish(std::span<const PhysicsHuman> humans, const sim::StaticWorld& solid,
-              const std::vector<Vec3>& current_m_s, double water_kg_m3, double dt_s,
+              const std::vector<ThingWater>& waters, double water_kg_m3, double dt_s,
               sim::ContactMemory& memory, PhysicsState& after) const;
 
  private:

@@ -104,20 +104,30 @@ Vec3 PhysicsWorld::current_ned_m_s(const Vec3& position_ned_m, double time_s) co
       sim::sample(*current_, rov::world_from_ned(position_ned_m), time_s).velocity_m_s);
 }
 
+diver::WaterFlow PhysicsWorld::water_ned(const Vec3& position_ned_m, double time_s) const {
+  diver::WaterFlow out(current_ned_m_s(position_ned_m, time_s));
+  if (!waves_) return out;
+  const WaveFlow flow = waves_->flow(rov::world_from_ned(position_ned_m), time_s);
+  out.current_m_s += rov::ned_from_world(flow.velocity_m_s);
+  out.head_m = flow.head_m;
+  return out;
+}
+
 // The forces on it in the step to come.
 rov::Inputs PhysicsWorld::acting_on(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,
                                     const VehicleState& state, double time_s, double dt_s) const {
   rov::Inputs acting;
   acting.thruster_n = state.command_n;
   const diver::WaterFlow water =
-      water_along(current_, state.body.position_ned_m,
+      water_along(current_, waves_, state.body.position_ned_m,
                   state.body.attitude * state.body.velocity.linear(), time_s, dt_s);
   acting.current_ned_m_s = water.current_m_s;
   acting.current_change_ned_m_s2 = water.change_m_s2;
   acting.water_acceleration_ned_m_s2 = water.acceleration_m_s2;
   acting.tether_anchor_ned_m = vehicle.tether_anchor_ned_m;
   acting.failed_thrusters = failed_thrusters(vehicle, inputs, state);
-  apply_surface(vehicle.vehicle, vehicle.kind.top_m, vehicle.kind.bottom_m, state.body, acting);
+  apply_surface(vehicle.vehicle, vehicle.kind.top_m, vehicle.kind.bottom_m, state.body,
+                water.head_m, acting);
   if (column_) {
     // The vehicle's buoyancy is that in water of the scene's density.
     const double more = column_->density_kg_m3(state.body.position_ned_m.z) / water_kg_m3_ - 1.0;

@@ -6,13 +6,23 @@
 
 namespace neritic::testbed {
 
-diver::WaterFlow water_along(const std::optional<sim::Current>& current, const Vec3& position_ned_m,
+diver::WaterFlow water_along(const std::optional<sim::Current>& current,
+                             const std::optional<SeaWaves>& waves, const Vec3& position_ned_m,
                              const Vec3& velocity_ned_m_s, double time_s, double dt_s) {
-  if (!current) return {};
+  if (!current && !waves) return {};
   const Vec3 velocity_m_s = rov::world_from_ned(velocity_ned_m_s);
-  const sim::CurrentSample water =
-      sim::sample(*current, rov::world_from_ned(position_ned_m) + 0.5 * dt_s * velocity_m_s,
-                  time_s + 0.5 * dt_s);
+  const Vec3 halfway_m = rov::world_from_ned(position_ned_m) + 0.5 * dt_s * velocity_m_s;
+  const double halfway_s = time_s + 0.5 * dt_s;
+  sim::CurrentSample water;
+  double head_m = 0.0;
+  if (current) water = sim::sample(*current, halfway_m, halfway_s);
+  if (waves) {
+    const WaveFlow flow = waves->flow(halfway_m, halfway_s);
+    water.velocity_m_s += flow.velocity_m_s;
+    water.gradient_per_s += flow.gradient_per_s;
+    water.rate_m_s2 += flow.rate_m_s2;
+    head_m = flow.head_m;
+  }
   const auto change_along = [&](const Vec3& way_m_s) {
     static_assert(rov::kMostWaterAcceleration_m_s2 == diver::kMostWaterAcceleration_m_s2);
     constexpr double kMost = rov::kMostWaterAcceleration_m_s2;
@@ -20,8 +30,10 @@ diver::WaterFlow water_along(const std::optional<sim::Current>& current, const V
         glm::clamp(water.rate_m_s2 + water.gradient_per_s * way_m_s, Vec3(-kMost), Vec3(kMost)));
   };
   const Vec3 change = change_along(velocity_m_s);
-  return {rov::ned_from_world(water.velocity_m_s) - 0.5 * dt_s * change, change,
-          change_along(water.velocity_m_s)};
+  diver::WaterFlow out{rov::ned_from_world(water.velocity_m_s) - 0.5 * dt_s * change, change,
+                       change_along(water.velocity_m_s)};
+  out.head_m = head_m;
+  return out;
 }
 
 }  // namespace neritic::testbed

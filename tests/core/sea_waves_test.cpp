@@ -107,5 +107,33 @@ TEST(SeaWaves, ExtremesAreFinite) {
       }
 }
 
+TEST(SeaWaves, TheFlowsGradientRateAndHeadAreThoseOfItsVelocity) {
+  const SeaWaves waves({.wind_m_s = 9.0, .fetch_m = 2e4, .direction_rad = 0.7});
+  constexpr double h = 1e-5, time_s = 3.0;
+  for (const Vec3& at : {Vec3(2, -0.4, 5), Vec3(-40, -3, 17), Vec3(0, -20, 0)}) {
+    const WaveFlow flow = waves.flow(at, time_s);
+    Vec3 turning(0.0);
+    for (int j = 0; j < 3; ++j) {
+      Vec3 step(0.0);
+      step[j] = h;
+      const Vec3 there =
+          (waves.velocity_m_s(at + step, time_s) - waves.velocity_m_s(at - step, time_s)) / (2 * h);
+      EXPECT_LT(glm::distance(flow.gradient_per_s[j], there), 1e-6) << j;
+      turning[j] = flow.gradient_per_s[(j + 1) % 3][(j + 2) % 3] -
+                   flow.gradient_per_s[(j + 2) % 3][(j + 1) % 3];
+    }
+    EXPECT_LT(glm::length(turning), 1e-9) << "no eddies";
+    EXPECT_NEAR(flow.gradient_per_s[0].x + flow.gradient_per_s[1].y + flow.gradient_per_s[2].z, 0.0,
+                1e-9)
+        << "no source";
+    const Vec3 later =
+        (waves.velocity_m_s(at, time_s + h) - waves.velocity_m_s(at, time_s - h)) / (2 * h);
+    EXPECT_LT(glm::distance(flow.rate_m_s2, later), 1e-6);
+  }
+  EXPECT_NEAR(waves.flow({2, 0, 5}, time_s).head_m, waves.height_m(2, 5, time_s), 1e-12);
+  EXPECT_LT(std::abs(waves.flow({2, -300, 5}, time_s).head_m), 1e-3);
+  EXPECT_EQ(SeaWaves().flow({0, -1, 0}, 0.0).head_m, 0.0);
+}
+
 }  // namespace
 }  // namespace neritic

@@ -255,7 +255,7 @@ rov::Inputs Flight::in_water(rov::Inputs out, const rov::State& state, double ti
                              double dt_s) const {
   if (!current) return out;
   const diver::WaterFlow water = water_along(
-      current, state.position_ned_m, state.attitude * state.velocity.linear(), time_s, dt_s);
+      current, {}, state.position_ned_m, state.attitude * state.velocity.linear(), time_s, dt_s);
   out.current_ned_m_s = water.current_m_s;
   out.current_change_ned_m_s2 = water.change_m_s2;
   out.water_acceleration_ned_m_s2 = water.acceleration_m_s2;
