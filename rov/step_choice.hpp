@@ -21,13 +21,21 @@ struct MeasuredRate {
 // rates between these cost more than the first and turn pulses as it does.
 std::span<const MeasuredRate> measured_rates();
 
+// What a vehicle can touch.
+enum class Touchable {
+  kNothing,
+  kEven,    // flat ground and things without inner edges: planes, boxes, hulls
+  kUneven,  // ground or meshes whose faces meet at inner edges, where a body hits as it slides
+};
+
 // How far steps that touch something lead off the path, by the change at which halving them ends:
-// the worst of all that was flown, at 80 Hz and more. The same vehicle set down on sand, driven
-// along it and against a wall, 20 s, by recorded commands with and without lag and by a controller
-// in the loop; a ball that bounces, a block that slides, a ball that rolls, against closed forms.
+// the worst of all that was flown at the rate that cheapest_step() sets beside it. 20 s along flat
+// sand and a wall, by recorded commands with and without lag and by a controller in the loop, at
+// rest and in a current that changes; a ball that bounces, a block that slides, a ball that rolls,
+// against closed forms. Uneven: sand in waves, and a wreck's mesh, in that current.
 // 0: such steps are not halved.
 struct MeasuredContact {
-  double within_m, error_m;
+  double within_m, error_m, uneven_error_m;
 };
 std::span<const MeasuredContact> measured_contacts();
 
@@ -35,8 +43,7 @@ struct StepChoice {
   double hz;
   double contact_error_m;  // at which halving a step that touches ends; 0: it is not halved
 };
-// The cheapest that holds the error, in open water or also where things are touched. kBadInput
-// where none does.
-Result<StepChoice> cheapest_step(double max_error_m, bool among_things);
+// The cheapest that holds the error among what can be touched. kBadInput where none does.
+Result<StepChoice> cheapest_step(double max_error_m, Touchable touchable);
 
 }  // namespace neritic::rov

@@ -10,8 +10,9 @@
 namespace neritic::sim {
 
 struct SolverMemory {
-  // Rounds go on until what they change is next to nothing: for steps that are compared with each
-  // other. Else some load may still move between contacts on one line.
+  // For steps that are compared with each other: rounds go on until what they change is next to
+  // nothing, where else some load may still move between contacts on one line, and soft hits too
+  // are one impulse at their own time (kPreciseHit_m_s).
   bool precise = false;
   std::vector<SolverContact> rows;
   std::vector<ContactImpulse> impulses;

@@ -39,19 +39,24 @@ constexpr double kTouchShare = 0.01;
 constexpr double kTogether_m = 1e-6;
 
 // Whether it would be met within the time, and faster than what lies is.
-bool is_hit(const BodyContact& contact, double approach_m_s, double dt_s) {
-  return approach_m_s < -kBounce_m_s && contact.gap_m + approach_m_s * dt_s < 0.0;
+bool is_hit(const BodyContact& contact, double approach_m_s, double dt_s, bool precise) {
+  return approach_m_s < -(precise ? kPreciseHit_m_s : kBounce_m_s) &&
+         contact.gap_m + approach_m_s * dt_s < 0.0;
 }
 bool touches(const BodyContact& contact, double approach_m_s, double dt_s) {
   return contact.gap_m <= std::max(-kTouchShare * approach_m_s * dt_s, kTogether_m);
 }
 
-// together: something is hit, and with it what is as good as met.
-double target_of(const BodyContact& contact, double approach_m_s, double dt_s, bool together) {
-  const bool met = together && approach_m_s < -kBounce_m_s && contact.gap_m < kTogether_m;
-  if ((met || is_hit(contact, approach_m_s, dt_s)) &&
-      (contact.restitution > 0.0 || touches(contact, approach_m_s, dt_s)))
-    return -contact.restitution * approach_m_s;
+// together: something is hit, and with it what is as good as met; precisely also what the hit
+// presses down.
+double target_of(const BodyContact& contact, double approach_m_s, double dt_s, bool together,
+                 bool precise) {
+  const bool fast = approach_m_s < -kBounce_m_s;
+  const bool met = together && (fast || precise) && contact.gap_m < kTogether_m;
+  const bool bounces = fast && contact.restitution > 0.0;
+  if ((met || is_hit(contact, approach_m_s, dt_s, precise)) &&
+      (bounces || touches(contact, approach_m_s, dt_s)))
+    return bounces ? -contact.restitution * approach_m_s : 0.0;
   return -std::max(contact.gap_m, 0.0) / dt_s;
 }
 
@@ -124,19 +129,21 @@ Six solve_push(SolverMemory& memory, std::span<const BodyContact> contacts, cons
 
 }  // namespace
 
-double time_to_hit(std::span<const BodyContact> contacts, const Twist& velocity, double dt_s) {
+double time_to_hit(std::span<const BodyContact> contacts, const Twist& velocity, double dt_s,
+                   bool precise) {
   double first_s = dt_s;
   for (const BodyContact& contact : contacts) {
     const double approach_m_s = approach_of(contact, velocity);
-    if (is_hit(contact, approach_m_s, dt_s) && !touches(contact, approach_m_s, dt_s))
+    if (is_hit(contact, approach_m_s, dt_s, precise) && !touches(contact, approach_m_s, dt_s))
       first_s = std::min(first_s, contact.gap_m / -approach_m_s);
   }
   return first_s;
 }
 
-bool meets_hard(std::span<const BodyContact> contacts, const Twist& velocity, double dt_s) {
+bool meets_hard(std::span<const BodyContact> contacts, const Twist& velocity, double dt_s,
+                bool precise) {
   return std::ranges::any_of(contacts, [&](const BodyContact& contact) {
-    return is_hit(contact, approach_of(contact, velocity), dt_s);
+    return is_hit(contact, approach_of(contact, velocity), dt_s, precise);
   });
 }
 
@@ -151,11 +158,11 @@ ContactSolution solve_contacts(std::span<const BodyContact> contacts,
   impulses.clear();
   double fastest_m_s = 0.0;
   bool bounces = false;
-  const bool together = meets_hard(contacts, free, dt_s);
+  const bool together = meets_hard(contacts, free, dt_s, precise);
   for (const BodyContact& contact : contacts) {
     SolverContact& row = rows.emplace_back(solver_contact(contact, inverse_mass));
     const double approach_m_s = dot_of(row.normal.jacobian, velocity);
-    row.target_m_s = target_of(contact, approach_m_s, dt_s, together);
+    row.target_m_s = target_of(contact, approach_m_s, dt_s, together, precise);
     fastest_m_s = std::max(fastest_m_s, row.target_m_s - approach_m_s);
     bounces = bounces || row.target_m_s > 0.0;
   }

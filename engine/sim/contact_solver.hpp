@@ -28,6 +28,9 @@ using InverseMass = std::array<double, 36>;
 
 // More than gravity adds in a step of 240 Hz, so that a resting body does not hop.
 inline constexpr double kBounce_m_s = 0.05;
+// In steps that are compared with each other, what is met faster than this is a hit of its own: a
+// soft hit that two steps share leads elsewhere by how they share it, however short they are.
+inline constexpr double kPreciseHit_m_s = 0.01;
 
 // In body axes about the body's origin.
 struct BodyContact {
@@ -63,10 +66,12 @@ ContactSolution solve_contacts(std::span<const BodyContact> contacts,
                                const InverseMass& inverse_mass, const Twist& free, double dt_s,
                                SolverMemory& memory);
 
-// The time within dt_s at which the body first hits, faster than kBounce_m_s, a contact that it
-// does not touch yet; dt_s: none.
-double time_to_hit(std::span<const BodyContact> contacts, const Twist& velocity, double dt_s);
-// Whether one is met within dt_s faster than kBounce_m_s.
-bool meets_hard(std::span<const BodyContact> contacts, const Twist& velocity, double dt_s);
+// The time within dt_s at which the body first hits a contact that it does not touch yet, faster
+// than kBounce_m_s, or precisely kPreciseHit_m_s; dt_s: none.
+double time_to_hit(std::span<const BodyContact> contacts, const Twist& velocity, double dt_s,
+                   bool precise = false);
+// Whether one is met within dt_s so fast.
+bool meets_hard(std::span<const BodyContact> contacts, const Twist& velocity, double dt_s,
+                bool precise = false);
 
 }  // namespace neritic::sim

@@ -164,7 +164,9 @@ class Mover {
     const std::span<const BodyContact> body_contacts = memory_.body_contacts;
     const Twist free = in_body(velocity_, axes);
     // As far as the first hit, which then is one impulse at its own place and time.
-    const double until_s = hits_ < kMostHits ? time_to_hit(body_contacts, free, left_s_) : left_s_;
+    const bool precise = memory_.solver.precise;
+    const double until_s =
+        hits_ < kMostHits ? time_to_hit(body_contacts, free, left_s_, precise) : left_s_;
     const bool hit = until_s < left_s_;
     hits_ += hit ? 1 : 0;
     const auto solution =
@@ -174,7 +176,8 @@ class Mover {
       return;
     }
     told_.touched = true;
-    told_.hits += meets_hard(body_contacts, free, until_s) || closes(contacts, solution) ? 1 : 0;
+    const bool hard = meets_hard(body_contacts, free, until_s, precise);
+    told_.hits += hard || closes(contacts, solution) ? 1 : 0;
     told_.converged = told_.converged && solution.converged;
     for (std::size_t i = 0; i < contacts.size(); ++i)
       told_.impulse_n_s += contacts[i].normal * solution.impulses[i].normal_n_s +

@@ -24,6 +24,7 @@ struct StaticThing {
 
 struct StaticWorld::Things {
   std::vector<StaticShape> shapes;
+  std::vector<bool> creased;  // of each shape
   std::vector<StaticThing> things;
   BoxTree tree;  // over the things
   StaticWorldCounts counts;

@@ -48,6 +48,8 @@ struct RayHit {
 struct StaticWorldCounts {
   std::size_t things = 0, triangles = 0;  // placed copies counted each
   std::size_t dropped = 0;                // triangles without area, or on the same three points
+  std::size_t creased = 0;                // things whose faces may meet at inner edges: neither
+                                          // flat nor convex, or of too many triangles to say
 };
 
 struct ContactMemory;  // contact_memory.hpp

@@ -12,10 +12,32 @@ namespace {
 // So far below a seabed things are led out of it.
 constexpr double kSolidBelow_m = 1000.0;
 
+// Of more triangles no one asks whether they are convex.
+constexpr std::size_t kMostAsked = 500;
+// Hulls and planes of single precision are no flatter.
+constexpr double kFlat_m = 1e-5;
+
 template <class Shape>
 std::uint32_t add_shape(std::vector<StaticShape>& shapes, Shape shape) {
   shapes.emplace_back(std::move(shape));
   return static_cast<std::uint32_t>(shapes.size() - 1);
+}
+
+// Whether some corner lies before some face.
+bool creased(const TriangleMesh& mesh) {
+  const auto count = static_cast<std::uint32_t>(mesh.triangle_count());
+  if (count > kMostAsked) return true;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Triangle face = mesh.triangle(i, 1.0, Vec3(0.0));
+    const Vec3 normal = glm::normalize(face.area_normal());
+    for (std::uint32_t k = 0; k < count; ++k)
+      for (const Vec3& corner_m : mesh.triangle(k, 1.0, Vec3(0.0)).corner)
+        if (glm::dot(normal, corner_m - face.corner[0]) > kFlat_m) return true;
+  }
+  return false;
+}
+bool creased(const HeightGrid& grid) {
+  return grid.bounds().high.y - grid.bounds().low.y > kFlat_m;
 }
 
 }  // namespace
@@ -37,6 +59,7 @@ Result<StaticWorldBuilder::ShapeId> StaticWorldBuilder::add_mesh(
     const std::string& name) {
   NERITIC_TRY(TriangleMesh mesh, TriangleMesh::build(vertices_m, indices, name));
   things_->counts.dropped += mesh.dropped_count();
+  things_->creased.push_back(creased(mesh));
   return add_shape(things_->shapes, std::move(mesh));
 }
 
@@ -53,13 +76,16 @@ Result<StaticWorldBuilder::ShapeId> StaticWorldBuilder::add_hull(std::span<const
   std::vector<std::uint32_t> indices;
   for (const auto& triangle : hull.triangles)
     indices.insert(indices.end(), triangle.begin(), triangle.end());
-  return add_mesh(vertices_m, indices, name);
+  NERITIC_TRY(const ShapeId id, add_mesh(vertices_m, indices, name));
+  things_->creased[id] = false;
+  return id;
 }
 
 Result<StaticWorldBuilder::ShapeId> StaticWorldBuilder::add_heights(
     std::uint32_t columns, std::uint32_t rows, double cell_m, std::span<const float> heights_m,
     const std::string& name) {
   NERITIC_TRY(HeightGrid grid, HeightGrid::build(columns, rows, cell_m, heights_m, name));
+  things_->creased.push_back(creased(grid));
   return add_shape(things_->shapes, std::move(grid));
 }
 
@@ -77,6 +103,7 @@ void StaticWorldBuilder::place(ShapeId shape, const Placement& placement, const 
   if (std::holds_alternative<HeightGrid>(things_->shapes[shape])) bounds.low.y -= kSolidBelow_m;
   things_->things.push_back({shape, placement, surface,
                              transformed(placement.world_from_thing, placement.scale, bounds)});
+  things_->counts.creased += things_->creased[shape] ? 1 : 0;
   things_->counts.triangles +=
       std::visit([](const auto& s) { return s.triangle_count(); }, things_->shapes[shape]);
 }

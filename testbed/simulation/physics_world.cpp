@@ -156,7 +156,11 @@ Status PhysicsWorld::choose_step(const scene::Scene& scene) {
     NERITIC_TRY(method_.integrator, rov::integrator_of(physics.integrator));
     return {};
   }
-  const auto choice = rov::cheapest_step(physics.max_error_m, solid_.counts().things > 0);
+  const sim::StaticWorldCounts& things = solid_.counts();
+  const rov::Touchable touchable = things.things == 0    ? rov::Touchable::kNothing
+                                   : things.creased == 0 ? rov::Touchable::kEven
+                                                         : rov::Touchable::kUneven;
+  const auto choice = rov::cheapest_step(physics.max_error_m, touchable);
   if (!choice.ok()) return bad_input("{}: physics.{}", scene.path, choice.error().message);
   step_s_ = 1.0 / choice->hz;
   method_ = {rov::Integrator::kGuarded, choice->contact_error_m};

@@ -156,6 +156,20 @@ TEST(StaticWorld, AHundredKilometresOutContactsAreTheSame) {
   }
 }
 
+// Flat ground, planes, boxes and hulls are not creased; uneven ground may have inner edges.
+TEST(StaticWorld, ThingsWithInnerEdgesAreCounted) {
+  const Mesh box = box_mesh(Vec3(1.0));
+  const auto creased = [&](float bump_m) {
+    StaticWorldBuilder builder;
+    builder.place(builder.add_mesh(box.vertices_m, box.indices, "box").value(), {}, {});
+    const std::vector<float> heights_m{0.0f, 0.0f, bump_m, 0.0f};
+    builder.place(builder.add_heights(2, 2, 1.0, heights_m, "bed").value(), {}, {});
+    return builder.build().counts().creased;
+  };
+  EXPECT_EQ(creased(0.0f), 0u);
+  EXPECT_EQ(creased(0.1f), 1u);
+}
+
 TEST(StaticWorld, ScaledAndTurnedCopiesShareAShape) {
   StaticWorldBuilder builder;
   const Mesh mesh = box_mesh(Vec3(1.0));

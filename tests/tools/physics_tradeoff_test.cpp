@@ -58,10 +58,11 @@ const PhysicsPoint& point(const PhysicsTradeoff& t, const std::string& flight,
 }
 
 TEST(PhysicsTradeoff, ErrorsFallWithTheStepAndTheGuardHoldsAtAny) {
-  const auto measured = run_physics_tradeoff({.quick = true});
+  const auto measured = run_physics_tradeoff(
+      {.quick = true, .scene = test::source_dir() / "assets/scenes/mission.toml"});
   ASSERT_TRUE(measured.ok()) << measured.error().message;
   const PhysicsTradeoff& t = *measured;
-  EXPECT_EQ(t.points.size(), 270u);
+  EXPECT_EQ(t.points.size(), 13u * 3u * 6u);
   EXPECT_LT(t.truth_error_m.at("lag"), 1e-9);
   EXPECT_LT(t.truth_error_m.at("no lag"), 1e-9);
   for (const char* vehicle : {"lag", "no lag"}) {
@@ -80,7 +81,7 @@ TEST(PhysicsTradeoff, ErrorsFallWithTheStepAndTheGuardHoldsAtAny) {
     EXPECT_LT(at_1_ms, 5e-3) << flight;
     EXPECT_GT(point(t, flight, Integrator::kGuarded, 25.0).error_m, 5.0 * at_1_ms) << flight;
   }
-  ASSERT_EQ(t.halved.size(), 18u);
+  ASSERT_EQ(t.halved.size(), 27u);
   for (const PhysicsPoint& p : t.halved) EXPECT_LE(p.error_m, 20.0 * p.within_m) << p.flight;
   const PhysicsPoint* best = cheapest(t, 1e-5);
   ASSERT_NE(best, nullptr);
@@ -118,7 +119,7 @@ TEST(PhysicsTradeoff, WhatAnErrorChoosesHoldsUnderControlInACurrent) {
     const Flight flight = mission_flight(pulses, 8.0).value();
     EXPECT_LT(flight.truth_error_m, 1e-8);
     for (const double asked_m : {1e-3, 1e-5, 1e-7}) {
-      const auto choice = rov::cheapest_step(asked_m, false);
+      const auto choice = rov::cheapest_step(asked_m, rov::Touchable::kNothing);
       ASSERT_TRUE(choice.ok()) << choice.error().message;
       EXPECT_LE(flown_error(flight, 1.0 / choice->hz, {}).m, asked_m) << flight.name;
     }
@@ -131,11 +132,12 @@ TEST(PhysicsTradeoff, WhatAnErrorChoosesHoldsOnEveryFlight) {
   flights.push_back(square_flight(true, 5.0).value());
   flights.push_back(contact_flight(true, 3.4));  // a corner first onto the sand, and along it
   flights.push_back(contact_mission_flight(3.4));
+  flights.push_back(landing_flight(false, 2.0));
   flights.push_back(bounce_flight(5.0));
   flights.push_back(slide_flight(5.0));
   flights.push_back(roll_flight(5.0));
-  for (const double asked_m : {3.5e-2, 1e-3, 4e-5}) {
-    const auto choice = rov::cheapest_step(asked_m, true);
+  for (const double asked_m : {3.5e-2, 1e-3, 1e-5}) {
+    const auto choice = rov::cheapest_step(asked_m, rov::Touchable::kEven);
     ASSERT_TRUE(choice.ok()) << choice.error().message;
     for (const Flight& flight : flights)
       EXPECT_LE(
@@ -143,23 +145,38 @@ TEST(PhysicsTradeoff, WhatAnErrorChoosesHoldsOnEveryFlight) {
           asked_m)
           << flight.name;
   }
-  // On the ground and along it 10 micrometres are held.
-  for (const Flight& flight : flights)
-    EXPECT_LE(flown_error(flight, 1.0 / 1000.0, {Integrator::kGuarded, 1e-5}).m, 1e-5)
+}
+
+// So it does on uneven ground and along a mesh, where a body hits each inner edge that it slides
+// over; the least that can be asked there is larger.
+TEST(PhysicsTradeoff, WhatAnErrorChoosesHoldsOnUnevenGroundAndAtTheWreck) {
+  EXPECT_FALSE(rov::cheapest_step(1e-5, rov::Touchable::kUneven).ok());
+  const double least_m = rov::measured_contacts().back().uneven_error_m;
+  const auto choice = rov::cheapest_step(least_m, rov::Touchable::kUneven).value();
+  std::vector<Flight> flights;
+  flights.push_back(landing_flight(true, 2.0));
+  flights.push_back(wreck_flight(test::source_dir() / "assets/scenes/mission.toml", 1.0).value());
+  for (const Flight& flight : flights) {
+    EXPECT_LT(flight.truth_error_m, 0.5 * least_m) << flight.name;
+    EXPECT_LE(
+        flown_error(flight, 1.0 / choice.hz, {Integrator::kGuarded, choice.contact_error_m}).m,
+        least_m)
         << flight.name;
+  }
 }
 
 TEST(PhysicsTradeoff, AnErrorBecomesTheCheapestRateThatHoldsIt) {
-  EXPECT_EQ(rov::cheapest_step(1e-3, false)->hz, 80.0);
-  EXPECT_EQ(rov::cheapest_step(1e-5, false)->hz, 1000.0);
-  EXPECT_EQ(rov::cheapest_step(1.2e-8, false)->hz, 1000.0);
-  EXPECT_EQ(rov::cheapest_step(5e-2, true)->contact_error_m, 0.0);
-  EXPECT_EQ(rov::cheapest_step(1e-2, true)->contact_error_m, 1e-4);
-  EXPECT_EQ(rov::cheapest_step(1e-2, false)->contact_error_m, 0.0);
-  EXPECT_TRUE(rov::cheapest_step(4e-5, true).ok());
-  EXPECT_FALSE(rov::cheapest_step(1e-12, false).ok());
-  EXPECT_FALSE(rov::cheapest_step(1e-6, true).ok());
-  EXPECT_FALSE(rov::cheapest_step(std::nan(""), true).ok());
+  using enum rov::Touchable;
+  EXPECT_EQ(rov::cheapest_step(1e-3, kNothing)->hz, 80.0);
+  EXPECT_EQ(rov::cheapest_step(1e-5, kNothing)->hz, 1000.0);
+  EXPECT_EQ(rov::cheapest_step(1.2e-8, kNothing)->hz, 1000.0);
+  EXPECT_EQ(rov::cheapest_step(5e-2, kEven)->contact_error_m, 0.0);
+  EXPECT_EQ(rov::cheapest_step(1e-2, kEven)->contact_error_m, 1e-4);
+  EXPECT_EQ(rov::cheapest_step(1e-2, kNothing)->contact_error_m, 0.0);
+  EXPECT_TRUE(rov::cheapest_step(1e-5, kEven).ok());
+  EXPECT_FALSE(rov::cheapest_step(1e-12, kNothing).ok());
+  EXPECT_FALSE(rov::cheapest_step(1e-6, kEven).ok());
+  EXPECT_FALSE(rov::cheapest_step(std::nan(""), kEven).ok());
   const auto rates = rov::measured_rates();
   for (std::size_t i = 1; i < rates.size(); ++i) {
     EXPECT_GT(rates[i].hz, rates[i - 1].hz);
@@ -173,6 +190,8 @@ TEST(PhysicsTradeoff, AnErrorBecomesTheCheapestRateThatHoldsIt) {
       EXPECT_LT(contacts[i].within_m, contacts[i - 1].within_m);
     }
     EXPECT_LT(contacts[i].error_m, contacts[i - 1].error_m);
+    EXPECT_LT(contacts[i].uneven_error_m, contacts[i - 1].uneven_error_m);
+    EXPECT_GT(contacts[i].uneven_error_m, contacts[i].error_m);
   }
 }
 

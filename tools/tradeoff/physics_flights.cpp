@@ -8,6 +8,7 @@
 #include "rov/guidance.hpp"
 #include "testbed/simulation/water_along.hpp"
 #include "tools/tradeoff/extrapolation.hpp"
+#include "tools/tradeoff/flight_parts.hpp"
 
 namespace neritic::tools {
 using namespace testbed;
@@ -17,18 +18,21 @@ constexpr double kTolerance = 1e-12;
 // Steps a hold of the truth among things, 1 ms; where halving those that touch ends, for the truth
 // and for what says how sure it is, m.
 constexpr int kFinest = 50;
-constexpr double kFinest_m = 3e-6, kSecond_m = 1e-5;
+constexpr double kFinest_m = 1e-6, kSecond_m = 3e-6;
+
+}  // namespace
 
 std::size_t holds_of(double seconds) {
   return static_cast<std::size_t>(std::llround(seconds / kHold_s));
 }
 
-// At 20 Hz.
 Loop loop_of(const rov::Vehicle& vehicle, rov::Guide guide) {
   rov::ControlGains gains = rov::default_gains();
   gains.period_s = kHold_s;
   return {rov::Allocator(vehicle), gains, std::move(guide), std::nullopt};
 }
+
+namespace {
 
 // Flies by the controller, steps a hold as fine as asked, and keeps its commands.
 void record_commands(Flight& flight, double seconds, int count, const rov::Guide& guide,
@@ -108,6 +112,15 @@ double most_apart_m(const std::vector<rov::State>& a, const std::vector<rov::Sta
   return most;
 }
 
+}  // namespace
+
+void halved_truth(Flight& flight) {
+  flight.truth = halved(flight, kFinest_m);
+  flight.truth_error_m = most_apart_m(flight.truth, halved(flight, kSecond_m));
+}
+
+namespace {
+
 rov::Vehicle vehicle_of(rov::VehicleParameters parameters, bool lag) {
   if (!lag) parameters.lag.kind = rov::ThrusterLag::Kind::kNone;
   return rov::make_vehicle(parameters).value();
@@ -169,7 +182,8 @@ void slide_north(Flight& flight, double height_m, double slowing_m_s2, double tu
   }
 }
 
-// Water whose velocity changes with depth, place and time, evenly over 40 m and 40 s.
+}  // namespace
+
 sim::Current turning_current() {
   sim::GridCurrent grid{.axes = {{-20.0, -30.0, -20.0}, Vec3(40.0), 0.0, 40.0},
                         .counts = {2, 2, 2, 2},
@@ -182,6 +196,8 @@ sim::Current turning_current() {
   }
   return grid;
 }
+
+namespace {
 
 // Round a circle, up and down, turning.
 rov::Setpoint round_and_down(const rov::State&, double t_s) {
@@ -226,7 +242,8 @@ rov::ThrustCurve pulse_curve() {
   return rov::ThrustCurve::make(std::move(pwm_us), {16.0}, std::move(thrust_n)).value();
 }
 
-// In fresh water over sand and before a wall, tilted.
+}  // namespace
+
 Flight vehicle_among_things(const char* name, bool lag) {
   Flight flight{.name = name,
                 .vehicle = vehicle_of(rov::bluerov2_heavy_manual(rov::kFreshDensity), lag)};
@@ -236,8 +253,6 @@ Flight vehicle_among_things(const char* name, bool lag) {
   rov::teleport(flight.start, {0.0, 0.0, -0.5}, glm::angleAxis(0.15, Vec3(0.6, 0.8, 0.0)));
   return flight;
 }
-
-}  // namespace
 
 rov::Inputs Flight::commands(std::size_t hold, const rov::State& state,
                              rov::ControlState& control) const {
@@ -300,8 +315,7 @@ Result<Flight> mission_flight(bool pulses, double seconds) {
 Flight contact_flight(bool lag, double seconds) {
   Flight flight = vehicle_among_things(lag ? "contact, lag" : "contact, no lag", lag);
   record_commands(flight, seconds, 400, among_things, Vec3(0.0));
-  flight.truth = halved(flight, kFinest_m);
-  flight.truth_error_m = most_apart_m(flight.truth, halved(flight, kSecond_m));
+  halved_truth(flight);
   return flight;
 }
 
@@ -309,8 +323,7 @@ Flight contact_mission_flight(double seconds) {
   Flight flight = vehicle_among_things("mission, contact", true);
   flight.inputs.assign(holds_of(seconds), {});
   flight.loop = loop_of(flight.vehicle, among_things);
-  flight.truth = halved(flight, kFinest_m);
-  flight.truth_error_m = most_apart_m(flight.truth, halved(flight, kSecond_m));
+  halved_truth(flight);
   return flight;
 }
 

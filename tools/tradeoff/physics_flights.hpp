@@ -2,6 +2,7 @@
 // and what stands in the way. Body and world axes of rov/ (north, east, down). One thread.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -73,6 +74,12 @@ Result<Flight> mission_flight(bool pulses, double seconds);
 Flight contact_flight(bool lag, double seconds);
 // The same way by a controller in the loop.
 Flight contact_mission_flight(double seconds);
+// In a current that is sheared and turns with time, by a controller in the loop: set down on sand,
+// flat or uneven, driven along it, lifted and set down again.
+Flight landing_flight(bool uneven, double seconds);
+// In the same current the first vehicle of the scene with the wreck, against the wreck's side and
+// along it, then on its deck: the mesh of 190 000 triangles that is drawn.
+Result<Flight> wreck_flight(const std::filesystem::path& scene_file, double seconds);
 // Without drag, onto and along a plane; the truth is the closed form. A ball that falls and
 // bounces; a block that slides until friction has stopped it; a ball that slides until it rolls,
 // with 5/7 of its speed.

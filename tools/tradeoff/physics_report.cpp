@@ -38,6 +38,13 @@ constexpr FlightWords kWords[] = {
      "first, along it and away, {:g} s, by the same recorded commands."},
     {"contact, lag", "The same with lag."},
     {"controller in contact", "The same with lag by a controller in the loop."},
+    {"sand in a current",
+     "By a controller in the loop in a current that changes with place and time, {:g} s: set down "
+     "on flat sand, driven along it, lifted, set down again."},
+    {"uneven sand in a current", "The same on waves of sand of 5 cm, in triangles of 0.5 m."},
+    {"the wreck in a current",
+     "In the same current against the side of the wreck of assets/scenes/mission.toml, along it "
+     "and onto its deck, {:g} s: a mesh of 190 000 triangles, a vehicle of five boxes."},
     {"a ball that bounces", "Restitution 0.6, no drag: the closed form is the truth."},
     {"a block that slides",
      "At 1 m/s onto sand with friction 0.3, no drag: by Coulomb's law it stops after 1.67 m."},

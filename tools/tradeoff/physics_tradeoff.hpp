@@ -16,16 +16,26 @@
 namespace neritic::tools {
 
 struct PhysicsTradeoffOptions {
-  bool quick = false;                  // a shorter flight, timed once: to see that it works
-  std::function<void()> step = [] {};  // after each of steps(options)
+  bool quick = false;  // a shorter flight, timed once: to see that it works
+  std::filesystem::path scene = "assets/scenes/mission.toml";  // with the wreck and a vehicle
+  std::function<void()> step = [] {};                          // after each of steps(options)
 };
 std::uint64_t steps(const PhysicsTradeoffOptions& options);
 
 // The flights (physics_flights.hpp), in this order.
-inline constexpr const char* kFlightNames[] = {
-    "no lag",          "lag",          "mission",          "mission, pulses",
-    "contact, no lag", "contact, lag", "mission, contact", "bounce",
-    "slide",           "roll"};
+inline constexpr const char* kFlightNames[] = {"no lag",
+                                               "lag",
+                                               "mission",
+                                               "mission, pulses",
+                                               "contact, no lag",
+                                               "contact, lag",
+                                               "mission, contact",
+                                               "landing, current",
+                                               "uneven sand, current",
+                                               "wreck, current",
+                                               "bounce",
+                                               "slide",
+                                               "roll"};
 
 struct PhysicsPoint {
   std::string flight;

@@ -177,14 +177,23 @@ TEST(PhysicsWorld, AnErrorChoosesTheStep) {
   ASSERT_TRUE(among.ok());
   EXPECT_NEAR((*among)->step_s(), 1.0 / 80.0, 1e-12);
   EXPECT_EQ((*among)->method().contact_error_m, 1e-4);
-  const auto better = world_of("4e-5", wall);
+  const auto better = world_of("1e-5", wall);
   ASSERT_TRUE(better.ok());
-  EXPECT_LT((*better)->method().contact_error_m, 1e-4);
+  EXPECT_LT((*better)->method().contact_error_m, 1e-5);
   const auto too_good = world_of("1e-6", wall);
   ASSERT_FALSE(too_good.ok());
-  EXPECT_NE(too_good.error().message.find("accepted: a number from 4e-05 where something solid"),
+  EXPECT_NE(too_good.error().message.find("accepted: a number from 1e-05 where something solid"),
             std::string::npos)
       << too_good.error().message;
+  // A mesh with inner edges, as a wreck's, holds less, and its scene is told so.
+  const std::string wreck = "[[objects]]\nclass = 'wreck'\nmodel = '" +
+                            (test::source_dir() / "assets/models/submarine.glb").string() +
+                            "'\nposition_m = [0, -30, -9]\n";
+  const auto at_wreck = world_of("1e-5", wreck.c_str());
+  ASSERT_FALSE(at_wreck.ok());
+  EXPECT_NE(at_wreck.error().message.find("where uneven ground or a mesh with inner edges"),
+            std::string::npos)
+      << at_wreck.error().message;
 }
 
 // Without noise each sensor says what the state is; the ground that it hears is the scene's.
