@@ -9,9 +9,9 @@
 namespace neritic::testbed {
 namespace {
 
-constexpr double kSeconds = 1.5;
+constexpr double kLanding_s = 1.5;
 
-std::string landing(double max_error_m) {
+std::string landing_text(double max_error_m) {
   return fmt::format("[physics]\nmax_error_m = {}\nwater_kg_m3 = 980\n", max_error_m) +
          "[current]\nkind = \"uniform\"\nvelocity_m_s = [0.4, 0, -0.15]\n"
          "[[objects]]\nname = \"sand\"\nclass = \"seabed\"\nshape = \"box\"\n"
@@ -20,7 +20,7 @@ std::string landing(double max_error_m) {
 }
 
 // The vehicle's path in whole steps by RK4: where it is each 0.1 s.
-std::vector<Vec3> path_ned_m(const PhysicsWorld& world, double step_s) {
+std::vector<Vec3> landing_path_ned_m(const PhysicsWorld& world, double step_s) {
   const PhysicsVehicle& vehicle = world.vehicles().front();
   rov::Inputs inputs;
   inputs.current_ned_m_s = world.current_ned_m_s(vehicle.start.position_ned_m, 0.0);
@@ -28,7 +28,7 @@ std::vector<Vec3> path_ned_m(const PhysicsWorld& world, double step_s) {
   sim::ContactMemory memory;
   std::vector<Vec3> path;
   const int steps = static_cast<int>(std::lround(0.1 / step_s));
-  for (double t_s = 0.0; t_s < kSeconds - 0.05; t_s += 0.1) {
+  for (double t_s = 0.0; t_s < kLanding_s - 0.05; t_s += 0.1) {
     for (int i = 0; i < steps; ++i) {
       const VehicleStep step{vehicle.kind.solid,          vehicle.vehicle, state, inputs, step_s,
                              {rov::Integrator::kRk4, 0.0}};
@@ -40,11 +40,11 @@ std::vector<Vec3> path_ned_m(const PhysicsWorld& world, double step_s) {
 }
 
 TEST(ContactError, TenMicrometresAreHeldWhereAVehicleLandsOnSandInACurrent) {
-  TestDive dive = dive_of(landing(1e-5));
+  TestDive dive = dive_of(landing_text(1e-5));
   ASSERT_GT(dive.world->method().contact_error_m, 0.0);
   // Of first order in their length: twice the finer less the coarser.
-  const std::vector<Vec3> fine = path_ned_m(*dive.world, 2.5e-5);
-  const std::vector<Vec3> coarse = path_ned_m(*dive.world, 5e-5);
+  const std::vector<Vec3> fine = landing_path_ned_m(*dive.world, 2.5e-5);
+  const std::vector<Vec3> coarse = landing_path_ned_m(*dive.world, 5e-5);
   double farthest_m = 0.0, apart_m = 0.0;
   for (std::size_t i = 0; i < fine.size(); ++i) {
     dive.run(0.1);
@@ -60,10 +60,10 @@ TEST(ContactError, TenMicrometresAreHeldWhereAVehicleLandsOnSandInACurrent) {
 
 // Whole steps, without max_error_m, err by far more there.
 TEST(ContactError, WholeStepsErrByMore) {
-  std::string text = landing(1e-5);
+  std::string text = landing_text(1e-5);
   text.replace(text.find("max_error_m = 1e-05"), 19, "rate_hz = 240");
   TestDive dive = dive_of(text);
-  const std::vector<Vec3> fine = path_ned_m(*dive.world, 1e-4);
+  const std::vector<Vec3> fine = landing_path_ned_m(*dive.world, 1e-4);
   double farthest_m = 0.0;
   for (const Vec3& at : fine) {
     dive.run(0.1);
