@@ -98,6 +98,17 @@ class Crops(unittest.TestCase):
             faint[40:46, 30:36] = True
             self.assertFalse(sonar_crops.heard(pixels, few) or sonar_crops.heard(pixels, faint))
 
+    def test_no_bottom_frequency_or_beam_of_the_test_is_learnt_from_but_their_ranges_are(self):
+        test, train = sonar_crops.SPLITS["test"], sonar_crops.SPLITS["train"]
+        for key in test:
+            self.assertFalse(set(test[key]) & set(train[key]), key)
+        for beam in test["beam"]:
+            self.assertTrue(sonar_crops.WIDE_BEAM_DEG[0] < beam < sonar_crops.WIDE_BEAM_DEG[1])
+        for impedance in (2700.0 * 5250, 1740.0 * 1615):  # rock, silt
+            r, sand = ((z - 1.48e6) / (z + 1.48e6) for z in (impedance, 1941.0 * 1749))
+            db = -27 + 20 * np.log10(r / sand)  # Mackenzie 1961
+            self.assertTrue(sonar_crops.WIDE_BOTTOM_DB[0] < db < sonar_crops.WIDE_BOTTOM_DB[1])
+
     @unittest.skipIf(torch is None, "no PyTorch here")
     def test_lessons_vary_by_the_seed_and_keep_their_thing(self):
         import variations
@@ -113,6 +124,17 @@ class Crops(unittest.TestCase):
             np.testing.assert_allclose(x.mean((2, 3)).numpy(), 0, atol=1e-4)
             for i in range(16):  # a bright thing of at least 2.5 % is there, or is not
                 self.assertEqual(bool((x[i, 0] > 1.5).float().mean() > 0.02 and x[i, 0].max() - x[i, 0].mean() > 1.5 and y[i] == 1), bool(y[i] == 1))
+
+
+    @unittest.skipIf(torch is None, "no PyTorch here")
+    def test_sonar_lessons_are_speckled_anew_with_the_loudest_bin_white(self):
+        import variations
+        pictures = np.full((4, 64, 64), 100, np.uint8)
+        make = variations._Sonar(torch, pictures, np.array([0, 0, 1, 1]), 5)
+        out = make._speckled(pictures[0].astype(np.float32), 1.0)
+        self.assertEqual(out.max(), 255)
+        self.assertAlmostEqual(float(out.std()) * 45 / 255, 5.57, delta=0.3)  # dB of exponential intensities
+        self.assertEqual(tuple(make.batch(8)[0].shape), (8, 1, 64, 64))
 
 
 FAKE = """import numpy as np

@@ -1,10 +1,12 @@
-"""Crops of an imaging sonar's pictures: 64 ranges by 64 bearings around one thing on or over a bottom, drawn by a seed.
+"""Crops of an imaging sonar's pictures: 64 ranges by 64 bearings, some 2.8 m by 3 m, around one thing on or over a bottom,
+drawn by a seed.
 
 A scene is a bottom, a device (frequency, beam, pulse, noise, speckle) and a range; the diver, the ROV, a moored mine, a
 tyre or nothing but stones are in it in random poses. The sonar moves around the thing: a crop is LOOKS pictures, each from
-6 to 14 degrees farther on. Devices and bottoms of the split "test" never occur in "train". A crop whose thing is, in the first
-picture, the loudest in fewer than LEAST_BINS of the 64 x 64 bins, or there not LEAST_LOUDER levels of 255 (3.5 dB) over the rest,
-is not made: nobody could name it. Crops to learn from may be fainter: LESSON_BINS of the sonar's own bins are enough.
+6 to 14 degrees farther on. Frequencies, bottoms and beams of the split "test" never occur in "train"; the strengths of bottoms
+and the widths of beams to learn from lie on both sides of them. A crop whose thing is, in the first picture, the loudest in
+fewer than LEAST_BINS of the 64 x 64 bins, or there not LEAST_LOUDER levels of 255 (3.5 dB) over the rest, is not made: nobody
+could name it. Crops to learn from may be fainter: LESSON_BINS of the sonar's own bins are enough.
 """
 import math
 import os
@@ -17,9 +19,12 @@ from rotations import quaternion
 CLASSES = ["nothing", "diver", "rov", "mine", "tyre"]
 LABELS = {"diver": 4, "rov": 5, "mine": 12, "tyre": 11}
 SIDE, LEAST_BINS, LEAST_LOUDER, LESSON_BINS, WINDOW_M, LOOKS = 64, 16, 20.0, 24, 2.8, 3
-SCENES, STEPS = 50, 3000  # to learn from; of the training
+# To learn from, scene by scene: crops of a class, how the scene is opened, and how many times its crops count.
+LESSONS = [(12, {}, 1)] * 25 + [(12, {"wide": True}, 8)] * 2
+SCENES, STEPS = 54, 3000  # to learn from; of the training
+WIDE_BOTTOM_DB, WIDE_BEAM_DEG = (-35.0, -18.0), (0.5, 1.6)
 SPLITS = {"train": {"bottoms": ["sand", "gravel", "mud"], "khz": [550, 750, 1200], "beam": [0.8, 1.0, 1.4]},
-          "choose": {"bottoms": ["sand", "mud"], "khz": [650], "beam": [0.9, 1.3]},
+          "choose": {"khz": [650]},
           "test": {"bottoms": ["rock", "silt"], "khz": [900], "beam": [0.6, 1.2]}}
 HEAD = """title = "Sonar crops"
 seed = {seed}
@@ -49,7 +54,7 @@ labels = {{ energy = true }}
 [[objects]]
 name = "floor"
 class = "seabed"
-material = "{bottom}"
+{bottom}
 terrain = "floor.npy"
 cell_m = 0.25
 position_m = [0, 0, 0]
@@ -91,12 +96,14 @@ def _eye(spot, far, yaw, down):
 class Maker:
     """Sonar crops of one seed's scene, as crops.Maker."""
 
-    def __init__(self, tools, split, seed):
+    def __init__(self, tools, split, seed, wide=False):
+        """wide: the bottom's strength and the beam are drawn evenly from WIDE_BOTTOM_DB and WIDE_BEAM_DEG."""
         first = {"train": 1 << 42, "choose": 1 << 43, "test": 1 << 41}[split]
         self.rng = rng = np.random.Generator(np.random.Philox(key=seed + first))
-        of, self.strict = SPLITS[split], split == "test"
+        of, self.strict, wide = SPLITS[split], split != "train", wide or split == "choose"
         self.water = f"{rng.choice(of['khz'])} kHz"
-        self.place = str(rng.choice(of["bottoms"]))
+        self.place = f"{rng.uniform(*WIDE_BOTTOM_DB):.1f} dB" if wide else str(rng.choice(of["bottoms"]))
+        bottom = f"backscatter_db = {self.place.split()[0]}" if wide else f'material = "{self.place}"'
         self.near = rng.uniform(1.5, 8.0)
         self.azimuth = math.radians(np.clip(170 / (self.near + 1.4) * rng.uniform(0.8, 1.2), 14, 45))
         rough = rng.uniform(0.0, 0.06)
@@ -113,8 +120,8 @@ class Maker:
         mine(os.path.join(tools.folder, "mine.glb"), rng.uniform(0.35, 0.5))
         hertz = float(self.water.split()[0]) * 1e3
         text = HEAD.format(seed=seed, near=self.near, far=self.near + WINDOW_M, azimuth=math.degrees(self.azimuth), hertz=hertz,
-                           band=rng.uniform(20e3, 60e3), beam=rng.choice(of["beam"]), noise=rng.uniform(60, 95),
-                           shape=rng.uniform(1.0, 10.0), bottom=self.place, assets=ASSETS)
+                           band=rng.uniform(20e3, 60e3), beam=rng.uniform(*WIDE_BEAM_DEG) if wide else rng.choice(of["beam"]),
+                           noise=rng.uniform(60, 95), shape=rng.uniform(1.0, 10.0), bottom=bottom, assets=ASSETS)
         folder = tools.folder
         for name, kind, drawn in (("diver", "diver", f'model = "{ASSETS}/models/diver.glb"\nclip = "swim"\nclip_rate = 37.3\nmaterial = "neoprene"'),
                                   ("rov", "rov", f'model = "{ASSETS}/models/rov.glb"\nmaterial = "aluminium"'),

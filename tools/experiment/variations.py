@@ -98,7 +98,10 @@ class _Camera:
 
 
 class _Sonar:
-    """Mirrored in bearing, shifted by up to 6 bins, and louder or fainter bins all over: a sonar's picture cannot be turned."""
+    """Mirrored in bearing, shifted by up to 6 bins, louder or fainter bins all over, as bottoms are, and half of them with a further
+    draw of speckle, as of a narrower beam: a sonar's picture cannot be turned."""
+
+    SPECKLE, SHAPES, POWERS, SPAN_DB = 0.5, (1.0, 10.0), (0.6, 1.3), 45.0
 
     def __init__(self, torch, pictures, classes, seed):
         self.torch, self.random, self.pictures, self.classes = torch, np.random.Generator(np.random.Philox(key=seed)), pictures, classes
@@ -111,5 +114,13 @@ class _Sonar:
         x = self.pictures[of].astype(np.float32)
         for i in range(n):
             x[i] = np.roll(x[i, :, ::rng.choice([-1, 1])], rng.integers(-6, 7, 2), (0, 1))
-        x = 255 * (x / 255) ** rng.uniform(0.8, 1.25, (n, 1, 1)) + rng.uniform(0, 12, (n, 1, 1)) * rng.standard_normal(x.shape, np.float32)
+            if rng.random() < self.SPECKLE:
+                x[i] = self._speckled(x[i], math.exp(rng.uniform(*np.log(self.SHAPES))))
+        x = 255 * (x / 255) ** rng.uniform(*self.POWERS, (n, 1, 1)) + rng.uniform(0, 12, (n, 1, 1)) * rng.standard_normal(x.shape, np.float32)
         return torch.tensor(x.clip(0, 255).astype(np.float32)[:, None]), torch.tensor(kinds)
+
+    def _speckled(self, levels, shape):
+        """Each bin times a gamma variate of mean 1; the loudest bin is white again."""
+        times = np.maximum(self.random.standard_gamma(shape, levels.shape, np.float32) / shape, 1e-4)
+        out = levels + np.float32(255 * 10 / self.SPAN_DB) * np.log10(times)
+        return np.maximum(out + (255 - out.max()), 0)
