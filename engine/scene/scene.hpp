@@ -39,7 +39,6 @@ inline constexpr ClassName kClasses[] = {
     {"seabed", 1}, {"rock", 2},  {"wreck", 3}, {"diver", 4}, {"rov", 5},        {"fish", 6},
     {"shark", 7},  {"plant", 8}, {"coral", 9}, {"pipe", 10}, {"structure", 11}, {"target", 12}};
 
-// Where something is: in the world, or on an object (then the pose is object_from_this).
 // A hull on the waves: heave, roll and pitch of the plane that fits them over its footprint.
 struct Afloat {
   SeaState sea;
@@ -47,6 +46,7 @@ struct Afloat {
   Vec2 length_breadth_m{0.0};  // along its axis z, and along x
 };
 
+// Where something is: in the world, or on an object (then the pose is object_from_this).
 struct Mount {
   int object = -1;                                 // index into Scene::objects; -1: the world
   Pose pose;                                       // of what moves: at time 0

@@ -268,7 +268,8 @@ std::shared_ptr<const Afloat> read_afloat(TableReader& parent, const Scene& scen
   };
   out.length_breadth_m = {size_m("length_m"), size_m("breadth_m")};
   if (!reader.ok()) parent.fail(reader.status().error());
-  for (const Key key : {"on", "dynamics", "human", "inputs", "thing", "flock"})
+  for (const Key key : {"on", "dynamics", "human", "inputs", "thing", "flock", "copies",
+                        "copies_file", "scatter", "collision", "look_at"})
     if (parent.has(key)) parent.refuse(key, "no such key beside afloat");
   if (!scene.water || !scene.water->waves) {
     parent.refuse("afloat", "a scene with [water.waves]");

@@ -63,7 +63,7 @@ DiveRow DiveRecorder::row_of(std::size_t index, const sim::Snapshot<PhysicsState
   row.world_from_body = world_pose_of(state.body);
   row.velocity = state.body.velocity;
   row.current_m_s =
-      rov::world_from_ned(world_.current_ned_m_s(state.body.position_ned_m, snapshot.time_s));
+      rov::world_from_ned(world_.water_ned(state.body.position_ned_m, snapshot.time_s).current_m_s);
   row.command_n = state.command_n;
   row.force_n = rov::thruster_forces(vehicle.vehicle, state.body, state.body.held);
   row.wanted = rov::world_pose(state.mission.wanted_ned_m, state.mission.wanted_attitude);

@@ -25,7 +25,8 @@ HumanRow human_row(const PhysicsWorld& world, std::size_t index,
   row.human = index;
   row.world_from_body = world_pose(root.position_ned_m, root.attitude);
   row.velocity = root.velocity;
-  row.current_m_s = world_from_ned(world.current_ned_m_s(root.position_ned_m, snapshot.time_s));
+  row.current_m_s =
+      world_from_ned(world.water_ned(root.position_ned_m, snapshot.time_s).current_m_s);
   row.goal = swim_goal(human, state);
   row.arrived = state.arrived;
   row.near_points = state.contact.near_points;

@@ -66,13 +66,20 @@ Status ImageConsumer::wish(const std::vector<Wish>& wishes) {
     if (!(wish.rate_hz >= 0.0 && std::isfinite(wish.rate_hz)))
       return refusal("images of " + wish.stream, fmt::format("{} Hz", wish.rate_hz),
                      "0 (the sensor's own rate) or more");
-    ids.push_back(static_cast<StreamId>(found - all_.begin()));
+    const auto id = static_cast<StreamId>(found - all_.begin());
+    if (std::ranges::find(ids, id) != ids.end())
+      return refusal("images", wish.stream + " twice", "each stream once");
+    ids.push_back(id);
     rates_hz.push_back(wish.rate_hz == 0.0 ? found->rate_hz
                                            : std::min(wish.rate_hz, found->rate_hz));
     counts.push_back({wish.stream});
   }
+  PingSchedule schedule(rates_hz);
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    if (const auto before = std::ranges::find(ids_, ids[i]); before != ids_.end())
+      schedule.go_on(i, schedule_, static_cast<std::size_t>(before - ids_.begin()));
   ids_ = std::move(ids);
-  schedule_ = PingSchedule(rates_hz);
+  schedule_ = std::move(schedule);
   counts_ = std::move(counts);
   return {};
 }

@@ -28,4 +28,10 @@ std::vector<PingSchedule::Due> PingSchedule::due(double time_s) {
   return out;
 }
 
+void PingSchedule::go_on(std::size_t sensor, const PingSchedule& from, std::size_t its) {
+  last_s_ = from.last_s_;
+  if (sensors_[sensor].period_s == from.sensors_[its].period_s)
+    sensors_[sensor] = from.sensors_[its];
+}
+
 }  // namespace neritic::testbed

@@ -19,6 +19,8 @@ class PingSchedule {
   // its own beat. A late sensor pings once, not once for each ping missed. If the
   // time falls, since the run went back, all begin their beat anew.
   std::vector<Due> due(double time_s);
+  // This sensor goes on with the beat of another schedule's, if that has the same rate.
+  void go_on(std::size_t sensor, const PingSchedule& from, std::size_t its);
 
  private:
   struct Sensor {

@@ -302,7 +302,8 @@ void add_battery(const PhysicsVehicle& vehicle, const Way& way, std::vector<std:
   const rov::Battery& battery = *vehicle.file.parameters.battery;
   const double stored_wh = battery.charge * battery.capacity_wh;
   const double needed_s = time_to_s(way, way.waypoints_m.size() - 1);
-  if (stored_wh * 3600.0 >= battery.hotel_w * needed_s && stored_wh > 0.0) return;
+  const bool lasts = battery.hotel_w == 0.0 || stored_wh * 3600.0 >= battery.hotel_w * needed_s;
+  if (lasts && stored_wh > 0.0) return;
   lines.push_back(
       fmt::format("{}: its battery's {:.3g} Wh are gone before the {:.4g} s of its way are: its "
                   "electronics alone draw {:.3g} W",

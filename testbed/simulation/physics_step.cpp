@@ -228,8 +228,13 @@ void PhysicsWorld::pull_all(const StepCall& call) const {
     if (thing.rests != 0 || acting(object.groups.front()) == Authority::kLive) continue;
     ThingWater& water = call.scratch.thing_waters[i];
     const Vec3 at_ned_m = rov::ned_from_world(object.motion.pose.position_m);
-    const diver::WaterFlow flow = water_ned(at_ned_m, call.time.time_s());
-    water = {rov::world_from_ned(flow.current_m_s), flow.head_m};
+    const diver::WaterFlow flow = waves_
+                                      ? water_along(current_, waves_, at_ned_m,
+                                                    rov::ned_from_world(object.motion.velocity_m_s),
+                                                    call.time.time_s(), call.time.step_s)
+                                      : water_ned(at_ned_m, call.time.time_s());
+    water = {rov::world_from_ned(flow.current_m_s), flow.head_m,
+             rov::world_from_ned(flow.acceleration_m_s2)};
     if (washes_)
       water.current_m_s +=
           rov::world_from_ned(wash_ned_m_s(vehicles_, call.before, at_ned_m, water_kg_m3_));
@@ -437,8 +442,9 @@ void PhysicsWorld::finish_vehicle(const StepCall& call, std::size_t i, unsigned 
 
 void PhysicsWorld::finish_human(const StepCall& call, std::size_t k, unsigned thread) const {
   const HumanScratch& own = call.scratch.humans[k];
-  const double head_m = waves_ ? water_ned(call.before.humans()[k].human.root.position_ned_m,
-                                           call.time.time_s() + call.time.step_s)
+  const double head_m = waves_ ? waves_
+                                     ->flow(own.moving.free.world_from_body.position_m,
+                                            call.time.time_s() + call.time.step_s)
                                      .head_m
                                : 0.0;
   end_human(humans_[k], solid_, own.moving, own.parted, head_m, call.time.step, call.time.step_s,
@@ -454,7 +460,8 @@ void PhysicsWorld::sense(std::size_t index, const rov::Vec6& contact, double fro
   if (!vehicle.readings) return;
   rov::SensorWorld world = sensor_world(index);
   if (waves_)
-    world.water.head_m = water_ned(state.vehicles()[index].body.position_ned_m, to_s).head_m;
+    world.water.head_m =
+        waves_->flow(rov::world_from_ned(state.vehicles()[index].body.position_ned_m), to_s).head_m;
   rov::update_readings(vehicle.file.sensors, world, vehicle.vehicle, state.vehicles()[index].body,
                        contact, from_s, to_s, state.readings()[*vehicle.readings]);
 }

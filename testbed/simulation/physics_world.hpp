@@ -132,6 +132,8 @@ class PhysicsWorld {
   const SourceNames& sources() const { return sources_; }
   // The scene's current, without waves.
   Vec3 current_ned_m_s(const Vec3& position_ned_m, double time_s) const;
+  // The water's velocity, with waves that move bodies, and its head; no accelerations.
+  diver::WaterFlow water_ned(const Vec3& position_ned_m, double time_s) const;
   // The newest readings of a vehicle's sensors; null where it has none.
   const rov::SensorReadings* readings(const PhysicsState& state, std::size_t vehicle) const;
   // The battery of a vehicle; null where its file names none.
@@ -184,8 +186,6 @@ class PhysicsWorld {
   void step_modems(const StepCall& call) const;
   void pull_all(const StepCall& call) const;
   void step_tethers(const StepCall& call) const;
-  // The water's velocity with waves and its head; no accelerations.
-  diver::WaterFlow water_ned(const Vec3& position_ned_m, double time_s) const;
   void start_navigation(std::size_t index, PhysicsState& state) const;
   void navigate(std::size_t index, double time_s, PhysicsState& state) const;
   rov::Inputs acting_on(const PhysicsVehicle& vehicle, const VehicleInputs& inputs,

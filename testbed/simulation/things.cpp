@@ -180,13 +180,18 @@ double wet_share(const PhysicsThing& thing, double height_m) {
   return std::clamp(0.5 - 0.5 * height_m / thing.radius_m, 0.0, 1.0);
 }
 
-Vec3 fallen(const PhysicsThing& thing, const Vec3& velocity_m_s, const Vec3& current_m_s,
-            double water_kg_m3, double dt_s, double wet) {
+Vec3 fallen(const PhysicsThing& thing, const Motion& motion, const ThingWater& water,
+            double water_kg_m3, double dt_s) {
   const scene::Thing& settings = thing.settings;
+  const Vec3 &velocity_m_s = motion.velocity_m_s, &current_m_s = water.current_m_s;
+  const double wet = wet_share(thing, motion.pose.position_m.y - water.head_m);
   const double net_n =
       (settings.mass_kg - wet * water_kg_m3 * settings.volume_m3) * diver::kGravity_m_s2;
   const Vec3 through = velocity_m_s - current_m_s;
-  const Vec3 pushed = through + Vec3(0.0, -net_n / thing.moving_kg * dt_s, 0.0);
+  // Water that speeds up pulls at its own mass in the thing's place and at that which moves along.
+  const double pulled_kg = water_kg_m3 * settings.volume_m3 + thing.moving_kg - settings.mass_kg;
+  const Vec3 pushed = through + Vec3(0.0, -net_n / thing.moving_kg * dt_s, 0.0) +
+                      wet * pulled_kg / thing.moving_kg * dt_s * water.acceleration_m_s2;
   // Drag of the speed halfway, implicit: v' = p - k |v'| v', in closed form.
   const double k = wet * 0.5 * water_kg_m3 * settings.drag_area_m2 / thing.moving_kg * dt_s;
   const double speed = glm::length(pushed);
@@ -202,9 +207,8 @@ void Things::pull(std::size_t index, std::span<const PhysicsHuman> humans, const
   const ThingState& state = after.things()[index];
   ObjectState& object = after.objects()[thing.object];
   sim::Held held{on_body_m(grips_[state.holder - 1], humans, after),
-                 fallen(thing, object.motion.velocity_m_s, water.current_m_s,
-                        density_at(object.motion.pose.position_m.y, water_kg_m3), dt_s,
-                        wet_share(thing, object.motion.pose.position_m.y - water.head_m)),
+                 fallen(thing, object.motion, water,
+                        density_at(object.motion.pose.position_m.y, water_kg_m3), dt_s),
                  thing.moving_kg};
   const Vec3 impulse = sim::grip_impulse(body.inverse_mass, body.free, held);
   sim::hold(body.inverse_mass, impulse, dt_s, body.free, held);
@@ -234,9 +238,8 @@ void Things::finish(std::span<const PhysicsHuman> humans, const sim::StaticWorld
       continue;
     }
     const Quat& q = motion.pose.rotation;
-    const Vec3 velocity = fallen(thing, motion.velocity_m_s, waters[i].current_m_s,
-                                 density_at(motion.pose.position_m.y, water_kg_m3), dt_s,
-                                 wet_share(thing, motion.pose.position_m.y - waters[i].head_m));
+    const Vec3 velocity =
+        fallen(thing, motion, waters[i], density_at(motion.pose.position_m.y, water_kg_m3), dt_s);
     const sim::Twist twist{glm::conjugate(q) * velocity, Vec3(0.0)};
     const sim::BodyMotion moved =
         sim::move_body(solid, thing.shape, thing.inverse_mass, motion.pose,

@@ -41,7 +41,8 @@ struct CarryingBody {
 // The water at a thing, world axes.
 struct ThingWater {
   Vec3 current_m_s{0.0};
-  double head_m = 0.0;  // of waves: the surface lies that much higher
+  double head_m = 0.0;          // of waves: the surface lies that much higher
+  Vec3 acceleration_m_s2{0.0};  // of waves: of the water itself
 };
 
 class Things {
@@ -86,11 +87,11 @@ class Things {
 // The share of a thing that is under water, as of a float between its radius above and below.
 double wet_share(const PhysicsThing& thing, double height_m);
 
-// The velocity of a thing after dt_s of weight, buoyancy and drag in that current; stable for any
+// The velocity of a thing after dt_s of weight, buoyancy and drag in that water; stable for any
 // dt_s. Closed form of a fall from rest: v_t tanh(t / tau), v_t = sqrt(2 (m - rho V) g / (rho C_d
 // A)), tau = (m + 0.5 rho V) v_t / ((m - rho V) g).
-Vec3 fallen(const PhysicsThing& thing, const Vec3& velocity_m_s, const Vec3& current_m_s,
-            double water_kg_m3, double dt_s, double wet = 1.0);
+Vec3 fallen(const PhysicsThing& thing, const Motion& motion, const ThingWater& water,
+            double water_kg_m3, double dt_s);
 
 GripReading grip_reading(const Things& things, std::size_t grip,
                          std::span<const PhysicsHuman> humans, const PhysicsState& state);

@@ -1,10 +1,18 @@
 #include "testbed/simulation/water_along.hpp"
 
+#include <algorithm>
+
 #include "diver/human_step.hpp"
 #include "rov/frames.hpp"
 #include "rov/step.hpp"
 
 namespace neritic::testbed {
+namespace {
+
+// So high over the surface waves no longer reach a body.
+constexpr double kFades_m = 0.5;
+
+}  // namespace
 
 diver::WaterFlow water_along(const std::optional<sim::Current>& current,
                              const std::optional<SeaWaves>& waves, const Vec3& position_ned_m,
@@ -18,9 +26,10 @@ diver::WaterFlow water_along(const std::optional<sim::Current>& current,
   if (current) water = sim::sample(*current, halfway_m, halfway_s);
   if (waves) {
     const WaveFlow flow = waves->flow(halfway_m, halfway_s);
-    water.velocity_m_s += flow.velocity_m_s;
-    water.gradient_per_s += flow.gradient_per_s;
-    water.rate_m_s2 += flow.rate_m_s2;
+    const double wet = std::clamp(1.0 - (halfway_m.y - flow.head_m) / kFades_m, 0.0, 1.0);
+    water.velocity_m_s += wet * flow.velocity_m_s;
+    water.gradient_per_s += wet * flow.gradient_per_s;
+    water.rate_m_s2 += wet * flow.rate_m_s2;
     head_m = flow.head_m;
   }
   const auto change_along = [&](const Vec3& way_m_s) {

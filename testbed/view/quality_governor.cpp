@@ -142,7 +142,12 @@ void QualityGovernor::add(double interval_ms, double work_ms, bool pinged) {
     --skip_;
     return;
   }
-  if (pinged && usual_ms_ > 0.0) return add_ping(interval_ms);
+  pinged_in_row_ = pinged ? pinged_in_row_ + 1 : 0;
+  // Where every frame has a ping, a frame with one is the usual one.
+  const bool always = pinged_in_row_ >= kFrames;
+  if (pinged && !always && usual_ms_ > 0.0) return add_ping(interval_ms);
+  // Pings that stay away cost nothing any more.
+  ping_ms_ = always ? 0.0 : std::min(ping_ms_, beyond_ms_ / static_cast<double>(since_ping_));
   interval_ms_[frames_ % kFrames] = interval_ms;
   work_ms_[frames_ % kFrames] = std::min(work_ms, interval_ms);
   ++frames_;
@@ -164,8 +169,8 @@ void QualityGovernor::add(double interval_ms, double work_ms, bool pinged) {
 
 // A sonar's frame says nothing of the others.
 void QualityGovernor::add_ping(double interval_ms) {
-  const double beyond_ms = std::min(std::max(interval_ms - usual_ms_, 0.0), 8.0 * budget_ms_);
-  const double share_ms = beyond_ms / static_cast<double>(since_ping_);
+  beyond_ms_ = std::min(std::max(interval_ms - usual_ms_, 0.0), 8.0 * budget_ms_);
+  const double share_ms = beyond_ms_ / static_cast<double>(since_ping_);
   ping_ms_ += kPingSmoothing * (share_ms - ping_ms_);
   since_ping_ = 0;
 }
@@ -182,9 +187,8 @@ void QualityGovernor::go_down(double interval_ms) {
   const std::size_t farthest = std::min(rung_ + reach, kAll.size() - 1);
   std::size_t next = rung_ + 1;
   while (next < farthest && cost(kAll[next]) > wanted) ++next;
-  rung_ = next;
+  move_to(next);
   climbed_ = false;
-  forget();
 }
 
 void QualityGovernor::go_up(double work_ms) {
@@ -197,13 +201,18 @@ void QualityGovernor::go_up(double work_ms) {
     finding_ = false;
     return;
   }
-  --rung_;
-  while (finding_ && rung_ > 0 && has_room(rung_ - 1)) --rung_;
+  std::size_t next = rung_ - 1;
+  while (finding_ && next > 0 && has_room(next - 1)) --next;
+  move_to(next);
   climbed_ = true;
-  forget();
 }
 
-void QualityGovernor::forget() {
+// What was measured on the old rung goes, but for the pings' share, which follows their rate.
+void QualityGovernor::move_to(std::size_t rung) {
+  const double rate = static_cast<double>(kAll[rung_].ping_every) / kAll[rung].ping_every;
+  ping_ms_ *= rate;
+  beyond_ms_ = std::max(beyond_ms_, ping_ms_);
+  rung_ = rung;
   frames_ = 0;
   skip_ = kInFlight;
   on_rung_s_ = 0.0;

@@ -58,7 +58,7 @@ class QualityGovernor {
 
  private:
   static constexpr std::size_t kFrames = 5;  // a decision's: the middle one counts
-  void forget();
+  void move_to(std::size_t rung);
   void add_ping(double interval_ms);
   void go_down(double interval_ms);
   void go_up(double work_ms);
@@ -71,7 +71,9 @@ class QualityGovernor {
   double on_rung_s_ = 0.0;
   double usual_ms_ = 0.0;       // the last decision's frame without a ping; 0: none was made
   double ping_ms_ = 0.0;        // a frame's share of pings
+  double beyond_ms_ = 0.0;      // that the last ping took longer than a frame without one
   std::size_t since_ping_ = 0;  // frames
+  std::size_t pinged_in_row_ = 0;
   // Each rung's wait before a climb to it.
   std::array<double, kRungs> wait_s_ = filled(1.0);
   bool climbed_ = false;  // the last change was a climb

@@ -299,8 +299,8 @@ Result<Truth> World::truth(const std::string& name) const {
     out.orientation = ros::xyzw(ros::enu_from_ned(attitude));
     out.linear_velocity = three(ros::flu_from_marine(velocity.linear()));
     out.angular_velocity = three(ros::flu_from_marine(velocity.angular()));
-    out.current =
-        three(ros::enu_from_ned(world.current_ned_m_s(position_ned_m, parts_->newest().time_s)));
+    out.current = three(
+        ros::enu_from_ned(world.water_ned(position_ned_m, parts_->newest().time_s).current_m_s));
     out.touched_steps = contact.touched_steps;
   };
   if (index < vehicles) {

@@ -41,40 +41,53 @@ class Gaze(unittest.TestCase):
 
 
 class Headset(unittest.TestCase):
+    def run_of(self, folder, *sets):
+        """The run's measures and markers."""
+        manifest, script, out = (os.path.join(folder, name) for name in ("fake.json", "script", "out"))
+        with open(manifest, "w") as file:
+            json.dump({"file_format_version": "1.0.0", "runtime": {"name": "fake", "library_path": RUNTIME}}, file)
+        with open(script, "w") as file:
+            file.write(SCRIPT + f"report {folder}/report\n")
+        done = subprocess.run(
+            ["/usr/bin/python3", "-B", str(ROOT / "tools/experiment"), "shark", "--program", PROGRAM, "--out", out, "--runs", "1", "--quiet",
+             "--set=person=\"headset\"", "--set=person_bearing_deg=35", "--set=gaze_within_deg=12", *(f"--set={one}" for one in sets)],
+            env=os.environ | {"XR_RUNTIME_JSON": manifest, "NERITIC_FAKE_XR": script}, capture_output=True, text=True, timeout=250)
+        with open(os.path.join(out, "runs.jsonl")) as file:
+            run = json.loads(file.read().splitlines()[1])
+        if run["failure"] and "Vulkan" in run["failure"]:
+            self.skipTest(run["failure"])
+        self.assertIsNone(run["failure"], done.stderr)
+        self.assertFalse(os.path.exists(folder + "/report") and open(folder + "/report").read())
+        with open(os.path.join(out, "person", "seed_1_1.markers.jsonl")) as file:
+            return run["measures"], [json.loads(line)["marker"] for line in file]
+
     def test_the_run_begins_with_the_wearers_gaze_and_is_judged_and_recorded_as_any(self):
         with tempfile.TemporaryDirectory() as folder:
-            manifest, script, out = (os.path.join(folder, name) for name in ("fake.json", "script", "out"))
-            with open(manifest, "w") as file:
-                json.dump({"file_format_version": "1.0.0", "runtime": {"name": "fake", "library_path": RUNTIME}}, file)
-            with open(script, "w") as file:
-                file.write(SCRIPT + f"report {folder}/report\n")
-            done = subprocess.run(
-                ["/usr/bin/python3", "-B", str(ROOT / "tools/experiment"), "shark", "--program", PROGRAM, "--out", out, "--runs", "1", "--quiet",
-                 "--set=person=\"headset\"", "--set=person_bearing_deg=35", "--set=seconds=3", "--set=gaze_within_deg=12", "--set=from_recording=true",
-                 "--set=detector=\"shipped\"", "--set=detector_least=0.2", "--set=shark_known_by=\"sonar\""],
-                env=os.environ | {"XR_RUNTIME_JSON": manifest, "NERITIC_FAKE_XR": script}, capture_output=True, text=True, timeout=250)
-            with open(os.path.join(out, "runs.jsonl")) as file:
-                run = json.loads(file.read().splitlines()[1])
-            if run["failure"] and "Vulkan" in run["failure"]:
-                self.skipTest(run["failure"])
-            self.assertIsNone(run["failure"], done.stderr)
-            measures = run["measures"]
+            measures, markers = self.run_of(folder, "seconds=3", "from_recording=true")
             # Not before the head had turned, and then soon.
             self.assertGreater(measures["found_s"], 0.15)
             self.assertIn("blocked", measures)
             self.assertTrue(measures["same_from_recording"])
             self.assertLess(measures["person_moved_m"], 3.0)  # hovers
-            with open(os.path.join(out, "person", "seed_1_1.markers.jsonl")) as file:
-                markers = [json.loads(line)["marker"] for line in file]
             self.assertEqual(markers[:3], ["shark shown", "gaze met the shark", "the ROV is told"])
             self.assertEqual(markers[-1], "run ends")
             # The recording has them too.
-            told = subprocess.run([PROGRAM, "recording", "export", os.path.join(out, "person", "seed_1_1.mcap"), "--out", folder + "/rows", "-q"],
+            told = subprocess.run([PROGRAM, "recording", "export", os.path.join(folder, "out/person/seed_1_1.mcap"), "--out", folder + "/rows", "-q"],
                                   capture_output=True, text=True, timeout=60)
             self.assertEqual(told.returncode, 0, told.stderr)
             rows = "".join(p.read_text() for p in pathlib.Path(folder, "rows").rglob("*markers*") if p.is_file())
             self.assertIn("gaze met the shark", rows)
-            self.assertFalse(os.path.exists(folder + "/report") and open(folder + "/report").read())
+
+    def test_what_the_wearer_looks_at_goes_to_the_detector_whose_word_the_rov_waits_for(self):
+        try:
+            import cv2  # noqa: F401
+        except ImportError as missing:
+            self.skipTest(f"no {missing.name}")
+        with tempfile.TemporaryDirectory() as folder:
+            measures, markers = self.run_of(folder, "seconds=3", "detector=\"shipped\"", "detector_least=0.2", "shark_known_by=\"sonar\"")
+            self.assertGreaterEqual(measures["looks"], 1)
+            told = [m for m in markers if m in ("the detector says shark", "the ROV is told")]
+            self.assertIn(told, ([], ["the detector says shark"], ["the detector says shark", "the ROV is told"]))
 
 
 if __name__ == "__main__":

@@ -41,10 +41,10 @@ class Gaze:
 
     def __init__(self, world, settings, seed, person=None):
         detector = looking.Detector(model_of(settings["detector"]))
+        world.images("gaze_crop/color", rate=10.0 if person else 60.0)
         self.world, self.s, self.seed, self.looker = world, settings, seed, looking.Looker(detector, settings["detector_least"])
         self.looks, self.wrong, self.work_s = 0, 0, []
         self.person, self.posed_s, self.shown = person, None, -1
-        world.images("gaze_crop/color", rate=10.0 if person else 60.0)
 
     def sees_shark(self, shark):
         """Whether the detector said "shark": of this look, or of a person's since the last call."""

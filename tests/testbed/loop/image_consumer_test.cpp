@@ -198,10 +198,17 @@ TEST_F(ImageConsumers, WishesMayChangeWhileAFrameIsOnItsWay) {
   EXPECT_TRUE(c.give(scene_, on_their_way, result).ok());
   EXPECT_TRUE(images.kept.empty());
   EXPECT_FALSE(c.wish({{"rov_eye/colour"}}).ok());  // which leaves the wishes
+  EXPECT_FALSE(c.wish({{"rov_eye/depth"}, {"rov_eye/depth"}}).ok());
   then.time_s = 1.0;
   EXPECT_EQ(c.ask(then).size(), 1u);
   EXPECT_EQ(then.sonars, std::vector<std::size_t>{0});
   EXPECT_TRUE(then.cameras.empty());
+  // Another's wish does not make the sonar ping sooner.
+  EXPECT_TRUE(c.wish({{"rov_eye/depth"}, {"rov_sonar/echoes"}}).ok());
+  FrameRequest soon;
+  soon.time_s = 1.05;
+  EXPECT_EQ(c.ask(soon).size(), 1u);
+  EXPECT_TRUE(soon.sonars.empty());
 }
 
 }  // namespace

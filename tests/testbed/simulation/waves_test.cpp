@@ -59,6 +59,43 @@ TEST(Waves, ADiverWithAFullJacketRidesThem) {
   EXPECT_LT(rides.over_m, 0.4 * rides.moved_m);
 }
 
+// What the dive computer of a diver who hangs in the water reads is the pressure there.
+TEST(Waves, ADiveComputerReadsTheirPressure) {
+  TestDive dive = dive_of(sea(kMoves) + diver_text("position_m = [0, -3, 0]\n"));
+  const SeaWaves waves(*dive.scene.water->waves);
+  double worst_m = 0.0, most_head_m = 0.0;
+  dive.run(15.0, [&] {
+    const HumanPhysics& human = dive.state().humans()[0];
+    const Vec3 at_m = rov::world_from_ned(human.human.root.position_ned_m);
+    const double head_m = waves.flow(at_m, dive.time_s()).head_m;
+    most_head_m = std::max(most_head_m, std::abs(head_m));
+    // Samples are at most half a second old.
+    worst_m = std::max(worst_m, std::abs(human.human.life.computer.last.depth_m + at_m.y - head_m));
+  });
+  EXPECT_GT(most_head_m, 0.25);
+  EXPECT_LT(worst_m, 0.8 * most_head_m);
+}
+
+// A thing as heavy as its water goes with it, though its drag alone would leave it behind.
+TEST(Waves, AThingAsHeavyAsItsWaterMovesWithTheWater) {
+  TestDive dive = dive_of(
+      sea(kMoves) +
+      "[[objects]]\nname = \"ball\"\nshape = \"sphere\"\nradius_m = 0.2\nposition_m = [0, -2, 0]\n"
+      "thing = { mass_kg = 34.45, volume_l = 33.5 }\n");
+  const SeaWaves waves(*dive.scene.water->waves);
+  const auto ball = [&]() -> const Motion& { return dive.state().objects()[0].motion; };
+  double worst_m_s = 0.0, fastest_m_s = 0.0;
+  dive.run(8.0, [&] {
+    const Vec3 water_m_s = waves.velocity_m_s(ball().pose.position_m, dive.time_s());
+    const Vec3 level(1.0, 0.0, 1.0);
+    fastest_m_s = std::max(fastest_m_s, glm::length(level * water_m_s));
+    if (dive.time_s() > 2.0)
+      worst_m_s = std::max(worst_m_s, glm::length(level * (ball().velocity_m_s - water_m_s)));
+  });
+  EXPECT_GT(fastest_m_s, 0.25);
+  EXPECT_LT(worst_m_s, 0.5 * fastest_m_s);
+}
+
 // Deep in a swell a vehicle as heavy as the water goes round with it.
 TEST(Waves, OneAsHeavyAsItsWaterMovesWithTheWater) {
   TestDive dive =

@@ -152,6 +152,21 @@ TEST(QualityGovernor, PingsCountByTheirShareOfAllFrames) {
   EXPECT_GT(rung_after(250.0), 0u);
 }
 
+TEST(QualityGovernor, PingsInEveryFrameAreNoReasonToWait) {
+  QualityGovernor governor(16.7);
+  for (int i = 0; i < 300; ++i) governor.add(16.7, 10.0);
+  for (int i = 0; i < 500; ++i) governor.add(120.0, 120.0, true);
+  EXPECT_EQ(governor.rung(), quality_rungs().size() - 1);
+}
+
+TEST(QualityGovernor, PingsThatEndAreForgotten) {
+  QualityGovernor governor(46.0);
+  for (int i = 0; i < 1000; ++i) governor.add(i % 10 == 9 ? 280.0 : 30.0, 30.0, i % 10 == 9);
+  EXPECT_GT(governor.rung(), 0u);
+  for (int i = 0; i < 4000; ++i) governor.add(30.0, 10.0);
+  EXPECT_EQ(governor.rung(), 0u);
+}
+
 TEST(QualityGovernor, SaysAllThatItGaveUp) {
   EXPECT_TRUE(given_up(Quality{}).empty());
   const auto words = given_up({.view_scale = 0.36, .ping_every = 8, .light = kLightLevels - 1});

@@ -115,7 +115,7 @@ class Vehicle(Agent):
     def fail(self, thrusters: Sequence[int] = ()) -> None:
         """These thrusters, counted from 0, give no thrust from now on; () repairs all."""
         failed = np.zeros(len(self.thruster_n))
-        for place in thrusters:
+        for place in [thrusters] if np.ndim(thrusters) == 0 else thrusters:
             failed[whole(f"{self.name}: fail", place, 0, len(failed) - 1)] = 1.0
         self.command("faults", failed)
 

@@ -26,7 +26,7 @@ def numbers(where: str, values: ArrayLike, count: Optional[int] = None) -> NDArr
     """Numbers in one row, with count: as many."""
     try:
         row = np.asarray(values, np.float64).ravel()
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise BadInput(f"{where}: found {_shown(values)}; accepted: "
                        f"{'numbers' if count is None else f'{count} numbers'}") from None
     if count is not None and row.size != count:
@@ -35,5 +35,8 @@ def numbers(where: str, values: ArrayLike, count: Optional[int] = None) -> NDArr
 
 
 def _shown(value: Any) -> str:
-    text = " ".join(repr(value).split())
+    try:
+        text = " ".join(repr(value).split())
+    except ValueError:  # of a whole number with thousands of digits
+        return f"a {type(value).__name__}"
     return text if len(text) <= 60 else text[:57] + "..."

@@ -87,7 +87,9 @@ class VectorEnv:
         threads."""
         if options:
             raise BadInput(f"options: found {sorted(options)}; accepted: none")
-        seeds = [self._next_seed] if seed is None else [seed] if isinstance(seed, (int, np.integer)) else list(seed)
+        seeds = [self._next_seed] if seed is None else [seed] if np.ndim(seed) == 0 else list(seed)
+        if not seeds:
+            raise BadInput("seed: found none; accepted: one for all, or one each")
         seeds = [whole("seed", one, 0, 2**64 - 1) for one in seeds]
         self._next_seed = (seeds[0] + 1) % 2**64
         self._core.reset(seeds)

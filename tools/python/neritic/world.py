@@ -156,6 +156,7 @@ class World:
         """Asks for images of these streams from the next tick on, "eye/color" or "sonar/echoes", at `rate` Hz
         or the sensor's own rate (0). The first call makes a Vulkan device. keep: callbacks get every
         image, not the newest of each tick alone."""
+        rate = float(numbers("images: rate", rate, 1)[0])
         for stream in streams:
             self._core.want_image(self._core.stream(stream), rate, keep)
             self._senses = True
@@ -192,6 +193,8 @@ class World:
     def inject(self, stream: str, values: ArrayLike, source: str, stamp: Optional[float] = None) -> None:
         """Sends a sample into a stream of inputs, as the device `source` would. It acts if that source has the
         authority. stamp: when it was measured; None: now."""
+        if stamp is not None:
+            stamp = float(numbers(f"inject: {stream}: stamp", stamp, 1)[0])
         self._core.inject(stream, numbers(f"inject: {stream}", values), source, stamp)
 
     def close(self) -> None:
