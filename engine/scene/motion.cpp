@@ -9,7 +9,7 @@ namespace neritic::scene {
 namespace {
 
 // Velocities of what floats are differences over twice this time.
-constexpr double kStep_s = 1e-3;
+constexpr double kFloatStep_s = 1e-3;
 
 Pose floating(const Mount& mount, double time_s) {
   const Pose still = mount.pose_at(time_s);
@@ -24,11 +24,11 @@ Pose floating(const Mount& mount, double time_s) {
 }
 
 Motion floating_motion(const Mount& mount, double time_s) {
-  const Pose before = floating(mount, time_s - kStep_s), after = floating(mount, time_s + kStep_s);
+  const Pose before = floating(mount, time_s - kFloatStep_s), after = floating(mount, time_s + kFloatStep_s);
   Quat turn = after.rotation * glm::conjugate(before.rotation);
   if (turn.w < 0.0) turn = -turn;
-  return {floating(mount, time_s), (after.position_m - before.position_m) / (2.0 * kStep_s),
-          Vec3(turn.x, turn.y, turn.z) / kStep_s};
+  return {floating(mount, time_s), (after.position_m - before.position_m) / (2.0 * kFloatStep_s),
+          Vec3(turn.x, turn.y, turn.z) / kFloatStep_s};
 }
 
 Motion local_motion(const Mount& mount, double time_s) {
