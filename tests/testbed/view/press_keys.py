@@ -80,8 +80,14 @@ class Driver:
         self.display = wait_for("the display", lambda: x11.XOpenDisplay(None))
         self.root = x11.XDefaultRootWindow(self.display)
         self.window = wait_for(f"a window '{title}'", lambda: self.find(self.root, title))
+        wait_for("the focus", self.focus)
+
+    def focus(self):
+        """A window that is not shown yet refuses it."""
+        errors.clear()
         x11.XSetInputFocus(self.display, self.window, 1, 0)
         x11.XSync(self.display, 0)
+        return not errors
 
     def find(self, window, title):
         name = ctypes.c_char_p()
