@@ -24,7 +24,8 @@ Pose floating(const Mount& mount, double time_s) {
 }
 
 Motion floating_motion(const Mount& mount, double time_s) {
-  const Pose before = floating(mount, time_s - kFloatStep_s), after = floating(mount, time_s + kFloatStep_s);
+  const Pose before = floating(mount, time_s - kFloatStep_s),
+             after = floating(mount, time_s + kFloatStep_s);
   Quat turn = after.rotation * glm::conjugate(before.rotation);
   if (turn.w < 0.0) turn = -turn;
   return {floating(mount, time_s), (after.position_m - before.position_m) / (2.0 * kFloatStep_s),

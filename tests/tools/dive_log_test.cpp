@@ -15,8 +15,8 @@
 namespace neritic {
 namespace {
 
-// A vehicle with every sensor and a tether, and a diver to whom all befalls: too deep on a small tank of air, an
-// inflator that freezes open; richer gas for the surface.
+// A vehicle with every sensor and a tether, and a diver to whom all befalls: too deep on a small
+// tank of air, an inflator that freezes open; richer gas for the surface.
 class DiveLog : public testing::Test {
  protected:
   void SetUp() override {

@@ -62,7 +62,8 @@ diver::Recording breath_of(const BreathColour& colour, double bpm, double second
     const double swell = in             ? std::sin(kPi * phase / 0.36)
                          : breathes_out ? std::sin(kPi * (phase - 0.46) / 0.40)
                                         : 0.0;
-    const double noise = random_normal(key, i), hum = 0.05 * random_normal({key.seed, 8, key.frame}, i);
+    const double noise = random_normal(key, i),
+                 hum = 0.05 * random_normal({key.seed, 8, key.frame}, i);
     const double l = low.step(noise), h = high.step(noise);
     out.samples.push_back(0.1 * (swell * ((in ? colour.in_low : colour.out_low) * l +
                                           (in ? colour.in_high : colour.out_high) * h) +

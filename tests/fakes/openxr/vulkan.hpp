@@ -74,10 +74,10 @@ struct Gpu::Functions {
   _(vkCreateCommandPool)                                                                          \
   _(vkDestroyCommandPool)                                                                         \
   _(vkAllocateCommandBuffers)                                                                     \
-  _(vkResetCommandPool) _(vkBeginCommandBuffer) _(vkEndCommandBuffer) _(vkCmdPipelineBarrier)     \
-      _(vkCmdCopyImageToBuffer) _(vkCmdClearColorImage) _(vkCmdClearDepthStencilImage)            \
-          _(vkQueueSubmit) _(vkCreateFence) _(vkDestroyFence) _(vkWaitForFences) _(vkResetFences) \
-              _(vkDeviceWaitIdle)
+  _(vkResetCommandPool)                                                                           \
+  _(vkBeginCommandBuffer) _(vkEndCommandBuffer) _(vkCmdPipelineBarrier) _(vkCmdCopyImageToBuffer) \
+      _(vkCmdClearColorImage) _(vkCmdClearDepthStencilImage) _(vkQueueSubmit) _(vkCreateFence)    \
+          _(vkDestroyFence) _(vkWaitForFences) _(vkResetFences) _(vkDeviceWaitIdle)
 #define NERITIC_VK_MEMBER(name) PFN_##name name = nullptr;
   NERITIC_VK_INSTANCE(NERITIC_VK_MEMBER)
   NERITIC_VK_DEVICE(NERITIC_VK_MEMBER)
