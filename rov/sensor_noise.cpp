@@ -17,14 +17,8 @@ RandomKey key_of(const NoiseSource& source, std::uint64_t component, Draw draw) 
 
 double random_walk(const RandomKey& key, std::uint64_t steps) {
   if (steps == 0) return 0.0;
-  // As random_normal(key, n), with what all draws share mixed once.
-  const std::uint64_t mixed = mix64(key.frame ^ mix64(key.stream ^ mix64(key.seed)));
-  const auto uniform = [mixed](std::uint64_t index) {
-    return static_cast<double>(mix64(index ^ mixed) >> 11) * 0x1.0p-53;
-  };
-  const auto normal = [&uniform](std::uint64_t n) {
-    return normal_of(uniform(2 * n), uniform(2 * n + 1));
-  };
+  const MixedKey mixed(key);
+  const auto normal = [&mixed](std::uint64_t n) { return random_normal(mixed, n); };
   // Draw n is the walk's own at step n: an increment up to it, or the bridge's deviation there.
   double low_value = 0.0, high_value = normal(1);
   std::uint64_t low = 0, high = 1;

@@ -21,7 +21,7 @@ struct MeasuredRate {
 // rates between these cost more than the first and turn pulses as it does.
 std::span<const MeasuredRate> measured_rates();
 
-// What a vehicle can touch.
+// The solid things among which a vehicle moves.
 enum class Touchable {
   kNothing,
   kEven,    // flat ground and things without inner edges: planes, boxes, hulls

@@ -12,7 +12,7 @@ namespace {
 // So far below a seabed things are led out of it.
 constexpr double kSolidBelow_m = 1000.0;
 
-// Of more triangles no one asks whether they are convex.
+// A mesh of more triangles counts as not convex, since the question takes their number squared.
 constexpr std::size_t kMostAsked = 500;
 // Hulls and planes of single precision are no flatter.
 constexpr double kFlat_m = 1e-5;
@@ -76,9 +76,10 @@ Result<StaticWorldBuilder::ShapeId> StaticWorldBuilder::add_hull(std::span<const
   std::vector<std::uint32_t> indices;
   for (const auto& triangle : hull.triangles)
     indices.insert(indices.end(), triangle.begin(), triangle.end());
-  NERITIC_TRY(const ShapeId id, add_mesh(vertices_m, indices, name));
-  things_->creased[id] = false;
-  return id;
+  NERITIC_TRY(TriangleMesh mesh, TriangleMesh::build(vertices_m, indices, name));
+  things_->counts.dropped += mesh.dropped_count();
+  things_->creased.push_back(false);
+  return add_shape(things_->shapes, std::move(mesh));
 }
 
 Result<StaticWorldBuilder::ShapeId> StaticWorldBuilder::add_heights(

@@ -72,7 +72,7 @@ constexpr double kRoom =
 constexpr std::size_t kInFlight = 3;  // frames after a change that were begun before it
 constexpr double kSettled_s = 5.0, kLongestWait_s = 60.0;
 
-// As if all work went with it.
+// A view's expected work over that of the best rung, as if all of it grew with the pixels.
 double cost(const Quality& quality) {
   return quality.view_scale * quality.view_scale * kLightCost[quality.light];
 }
@@ -207,7 +207,7 @@ void QualityGovernor::go_up(double work_ms) {
   climbed_ = true;
 }
 
-// What was measured on the old rung goes, but for the pings' share, which follows their rate.
+// Forgets the frames of the old rung. The pings' share stays, scaled to their new rate.
 void QualityGovernor::move_to(std::size_t rung) {
   const double rate = static_cast<double>(kAll[rung_].ping_every) / kAll[rung].ping_every;
   ping_ms_ *= rate;

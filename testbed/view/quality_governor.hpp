@@ -33,7 +33,7 @@ std::span<const Quality> quality_rungs();
 scene::PictureDetail detail_at(const scene::PictureDetail& camera, std::uint32_t light);
 // And what is left out there.
 Thrift thrift_at(std::uint32_t light);
-// What is less than the best, in words for a person, a line each; none: nothing is.
+// Lines that tell a person each thing that is less than at the best rung; none at the best.
 std::vector<std::string> given_up(const Quality& quality);
 
 // Where a machine without a graphics card begins with pictures of so many pixels: two cores draw

@@ -160,7 +160,8 @@ class World {
   Status drop_image(std::uint32_t stream);
   // Those that arrived since the last call, in their order, with their pixels: nothing is copied.
   std::vector<std::unique_ptr<WorldImage>> take_images();
-  // Of an attached world: for the loop, which computes what is wanted. Otherwise null.
+  // The consumer by which an attached world asks its loop for images; null if the world has a loop
+  // of its own.
   ImageConsumer* images();
 
   // A command for an agent takes the authority over its group and holds until the next one,

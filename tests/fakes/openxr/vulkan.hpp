@@ -56,28 +56,37 @@ struct Gpu::Functions {
 #define NERITIC_VK_INSTANCE(_)           \
   _(vkGetPhysicalDeviceMemoryProperties) \
   _(vkGetDeviceProcAddr) _(vkCreateDebugUtilsMessengerEXT) _(vkDestroyDebugUtilsMessengerEXT)
-#define NERITIC_VK_DEVICE(_)                                                                      \
-  _(vkGetDeviceQueue)                                                                             \
-  _(vkCreateImage)                                                                                \
-  _(vkDestroyImage)                                                                               \
-  _(vkGetImageMemoryRequirements)                                                                 \
-  _(vkCreateBuffer)                                                                               \
-  _(vkDestroyBuffer)                                                                              \
-  _(vkGetBufferMemoryRequirements)                                                                \
-  _(vkAllocateMemory)                                                                             \
-  _(vkFreeMemory)                                                                                 \
-  _(vkBindImageMemory)                                                                            \
-  _(vkBindBufferMemory)                                                                           \
-  _(vkMapMemory)                                                                                  \
-  _(vkUnmapMemory)                                                                                \
-  _(vkInvalidateMappedMemoryRanges)                                                               \
-  _(vkCreateCommandPool)                                                                          \
-  _(vkDestroyCommandPool)                                                                         \
-  _(vkAllocateCommandBuffers)                                                                     \
-  _(vkResetCommandPool)                                                                           \
-  _(vkBeginCommandBuffer) _(vkEndCommandBuffer) _(vkCmdPipelineBarrier) _(vkCmdCopyImageToBuffer) \
-      _(vkCmdClearColorImage) _(vkCmdClearDepthStencilImage) _(vkQueueSubmit) _(vkCreateFence)    \
-          _(vkDestroyFence) _(vkWaitForFences) _(vkResetFences) _(vkDeviceWaitIdle)
+#define NERITIC_VK_DEVICE(_)        \
+  _(vkGetDeviceQueue)               \
+  _(vkCreateImage)                  \
+  _(vkDestroyImage)                 \
+  _(vkGetImageMemoryRequirements)   \
+  _(vkCreateBuffer)                 \
+  _(vkDestroyBuffer)                \
+  _(vkGetBufferMemoryRequirements)  \
+  _(vkAllocateMemory)               \
+  _(vkFreeMemory)                   \
+  _(vkBindImageMemory)              \
+  _(vkBindBufferMemory)             \
+  _(vkMapMemory)                    \
+  _(vkUnmapMemory)                  \
+  _(vkInvalidateMappedMemoryRanges) \
+  _(vkCreateCommandPool)            \
+  _(vkDestroyCommandPool)           \
+  _(vkAllocateCommandBuffers)       \
+  _(vkResetCommandPool)             \
+  _(vkBeginCommandBuffer)           \
+  _(vkEndCommandBuffer)             \
+  _(vkCmdPipelineBarrier)           \
+  _(vkCmdCopyImageToBuffer)         \
+  _(vkCmdClearColorImage)           \
+  _(vkCmdClearDepthStencilImage)    \
+  _(vkQueueSubmit)                  \
+  _(vkCreateFence)                  \
+  _(vkDestroyFence)                 \
+  _(vkWaitForFences)                \
+  _(vkResetFences)                  \
+  _(vkDeviceWaitIdle)
 #define NERITIC_VK_MEMBER(name) PFN_##name name = nullptr;
   NERITIC_VK_INSTANCE(NERITIC_VK_MEMBER)
   NERITIC_VK_DEVICE(NERITIC_VK_MEMBER)

@@ -42,7 +42,8 @@ std::vector<Vec3> landing_path_ned_m(const PhysicsWorld& world, double step_s) {
 TEST(ContactError, TenMicrometresAreHeldWhereAVehicleLandsOnSandInACurrent) {
   TestDive dive = dive_of(landing_text(1e-5));
   ASSERT_GT(dive.world->method().contact_error_m, 0.0);
-  // Of first order in their length: twice the finer less the coarser.
+  // Whole steps err in proportion to their length, so that twice the finer less the coarser is
+  // better.
   const std::vector<Vec3> fine = landing_path_ned_m(*dive.world, 2.5e-5);
   const std::vector<Vec3> coarse = landing_path_ned_m(*dive.world, 5e-5);
   double farthest_m = 0.0, apart_m = 0.0;

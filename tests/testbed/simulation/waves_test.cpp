@@ -59,7 +59,7 @@ TEST(Waves, ADiverWithAFullJacketRidesThem) {
   EXPECT_LT(rides.over_m, 0.4 * rides.moved_m);
 }
 
-// What the dive computer of a diver who hangs in the water reads is the pressure there.
+// A diver's dive computer reads the pressure at its place under the waves.
 TEST(Waves, ADiveComputerReadsTheirPressure) {
   TestDive dive = dive_of(sea(kMoves) + diver_text("position_m = [0, -3, 0]\n"));
   const SeaWaves waves(*dive.scene.water->waves);
