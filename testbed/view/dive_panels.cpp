@@ -202,8 +202,9 @@ void participants_table(const PanelFacts& facts, float scale) {
   for (const ParticipantRow& row : facts.participants) {
     ImGui::TableNextRow();
     for (const std::string& cell :
-         {row.name, fmt::format("{:.1f} m", row.depth_m), fmt::format("{:.2f} m/s", row.speed_m_s),
-          fmt::format("{:.1f} m", row.away_m)}) {
+         {row.name,
+          fmt::format("{:.1f} m", std::round(10.0 * row.depth_m) / 10.0 + 0.0),  // no "-0.0"
+          fmt::format("{:.2f} m/s", row.speed_m_s), fmt::format("{:.1f} m", row.away_m)}) {
       ImGui::TableNextColumn();
       text_line(cell);
     }
