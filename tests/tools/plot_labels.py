@@ -14,7 +14,7 @@ from matplotlib.text import Text  # noqa: E402
 
 def labels(figure):
     """(words, box) of all text that is drawn; ticks outside their axis are not."""
-    figure.draw_without_rendering()
+    figure.canvas.draw()
     renderer, texts, of_ticks = figure.canvas.get_renderer(), [], set()
     for axis in figure.findobj(Axis):
         low, high = sorted(axis.get_view_interval())
