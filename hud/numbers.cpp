@@ -111,9 +111,9 @@ FixedText percent_text(double percent) {
 
 FixedText heading_text(double rad) {
   if (!std::isfinite(rad)) return "---";
-  double degrees = std::fmod(std::round(rad * 180.0 / std::numbers::pi), 360.0);
-  if (degrees < 0.0) degrees += 360.0;
-  return FixedText::of("{:03.0f}", degrees);
+  const double degrees = std::fmod(std::round(rad * 180.0 / std::numbers::pi), 360.0);
+  // A sum with 0 has no sign where it is 0.
+  return FixedText::of("{:03.0f}", degrees < 0.0 ? degrees + 360.0 : degrees + 0.0);
 }
 
 FixedText litres_text(double m3, Units units) {

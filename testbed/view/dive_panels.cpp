@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "engine/draw2d/axes.hpp"
+#include "hud/numbers.hpp"
 #include "testbed/view/panel_frame.hpp"
 
 namespace neritic::testbed {
@@ -180,7 +181,7 @@ void draw_readout(const FreeCamera& camera, const PanelRect& rect, float scale) 
   draw_card(list, camera.heading_deg(), x, y, half, scale);
   const double depth_m = -camera.position_m().y;
   const std::string heading =
-      fmt::format("heading {:03.0f}\u00b0", std::fmod(std::round(camera.heading_deg()), 360.0));
+      fmt::format("heading {}\u00b0", hud::heading_text(radians(camera.heading_deg())).view());
   const std::string text = depth_m >= 0.0
                                ? fmt::format("depth {:5.2f} m    {}", depth_m, heading)
                                : fmt::format("{:.2f} m above water    {}", -depth_m, heading);
@@ -202,9 +203,8 @@ void participants_table(const PanelFacts& facts, float scale) {
   for (const ParticipantRow& row : facts.participants) {
     ImGui::TableNextRow();
     for (const std::string& cell :
-         {row.name,
-          fmt::format("{:.1f} m", std::round(10.0 * row.depth_m) / 10.0 + 0.0),  // no "-0.0"
-          fmt::format("{:.2f} m/s", row.speed_m_s), fmt::format("{:.1f} m", row.away_m)}) {
+         {row.name, metres_text(row.depth_m, 1), fmt::format("{:.2f} m/s", row.speed_m_s),
+          metres_text(row.away_m, 1)}) {
       ImGui::TableNextColumn();
       text_line(cell);
     }

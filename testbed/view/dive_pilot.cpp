@@ -2,6 +2,7 @@
 
 #include "diver/human_step.hpp"
 #include "engine/core/log.hpp"
+#include "hud/numbers.hpp"
 #include "rov/frames.hpp"
 #include "testbed/samples/authority_words.hpp"
 
@@ -21,12 +22,6 @@ VehicleWrench wrench_of(const DiveInput& input) {
   out.wrench[2] = -input.move.y * (input.fast ? kFullThrust_n : kLift_n);
   out.wrench[5] = input.turn * (input.fast ? kFastTurn_n_m : kTurn_n_m);
   return out;
-}
-
-// Rounded to whole degrees below 360.
-double heading_0_360_deg(const Quat& ned_from_body) {
-  const double heading = std::round(degrees(rov::heading_of(ned_from_body)));
-  return heading < 0.0 ? heading + 360.0 : std::fmod(heading, 360.0);
 }
 
 }  // namespace
@@ -108,8 +103,8 @@ std::string DivePilot::doing(std::size_t object) const {
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     if (vehicles[i].object != object) continue;
     const VehicleState& state = physics_->shown().vehicles()[i];
-    const std::string heading =
-        fmt::format("heading {:03.0f}\u00b0", heading_0_360_deg(state.body.attitude));
+    const std::string heading = fmt::format(
+        "heading {}\u00b0", hud::heading_text(rov::heading_of(state.body.attitude)).view());
     if (flying_ && i == vehicle_) return heading + ", piloted";
     const auto& mission = vehicles[i].mission;
     if (!mission || mission->waypoint_count() == 0) return heading;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hud/numbers.hpp"
 #include "rov/frames.hpp"
 #include "testbed/view/panel_frame.hpp"
 
@@ -45,9 +46,8 @@ VehicleGauges gauges_of(const PhysicsWorld& world, const PhysicsState& state, st
   const rov::State& body = state.vehicles()[index].body;
   VehicleGauges out{.name = vehicle.name,
                     .depth_m = body.position_ned_m.z,
-                    .heading_deg = degrees(rov::heading_of(body.attitude)),
+                    .heading_rad = rov::heading_of(body.attitude),
                     .speed_m_s = glm::length(body.velocity.linear())};
-  if (out.heading_deg < 0.0) out.heading_deg += 360.0;
   const auto forces = rov::thruster_forces(vehicle.vehicle, body, body.held);
   for (std::size_t i = 0; i < vehicle.file.parameters.thrusters.size(); ++i) {
     const rov::Thruster& thruster = vehicle.file.parameters.thrusters[i];
@@ -85,8 +85,8 @@ PanelWish gauges_wish(const VehicleGauges& gauges) {
 
 void draw_gauges(const VehicleGauges& gauges, const PanelRect& rect, float scale) {
   begin_panel(gauges.name + "###gauges", rect, scale);
-  text_line(fmt::format("{:.2f} m   {:03.0f}\u00b0   {:.2f} m/s", gauges.depth_m,
-                        std::fmod(std::round(gauges.heading_deg), 360.0), gauges.speed_m_s));
+  text_line(fmt::format("{}   {}\u00b0   {:.2f} m/s", metres_text(gauges.depth_m, 2),
+                        hud::heading_text(gauges.heading_rad).view(), gauges.speed_m_s));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float line = ImGui::GetTextLineHeight(), label = 70.0f * scale;
   for (std::size_t i = 0; i < gauges.thrust.size(); ++i) {

@@ -13,7 +13,7 @@ namespace neritic::testbed {
 
 struct VehicleGauges {
   std::string name;
-  double depth_m = 0.0, heading_deg = 0.0, speed_m_s = 0.0;
+  double depth_m = 0.0, heading_rad = 0.0, speed_m_s = 0.0;
   std::vector<double> thrust;  // each thruster's share of its limit, -1 to 1
   std::vector<bool> failed;
   std::uint64_t tether_touching = 0;         // segments on something solid

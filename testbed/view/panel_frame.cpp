@@ -16,6 +16,11 @@ float height_of_lines(std::size_t lines, float scale) {
   return (ImGui::GetFrameHeight() + 2.0f * style.WindowPadding.y + text) / scale;
 }
 
+std::string metres_text(double m, int decimals) {
+  const double steps = std::pow(10.0, decimals);
+  return fmt::format("{:.{}f} m", std::round(steps * m) / steps + 0.0, decimals);
+}
+
 void text_line(const std::string& text) {
   ImGui::TextUnformatted(text.data(), text.data() + text.size());
 }

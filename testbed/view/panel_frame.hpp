@@ -29,6 +29,8 @@ void begin_panel(const std::string& title, const PanelRect& rect, float scale, i
 // The height of a panel with that many lines of text below its title, at scale 1.
 float height_of_lines(std::size_t lines, float scale);
 void text_line(const std::string& text);
+// "4.20 m" with that many decimals; a depth that rounds to nothing has no sign.
+std::string metres_text(double m, int decimals);
 // Its middle is at x, its top at y.
 void centered_text(ImDrawList& list, float x, float y, ImU32 color, const std::string& text);
 

@@ -102,6 +102,7 @@ TEST(HudNumbers, HeadingIsThreeDigitsBelow360) {
   EXPECT_EQ(heading_text(radians(7.4)).view(), "007");
   EXPECT_EQ(heading_text(radians(359.6)).view(), "000");
   EXPECT_EQ(heading_text(radians(-90.0)).view(), "270");
+  EXPECT_EQ(heading_text(radians(-0.4)).view(), "000");
   EXPECT_EQ(heading_text(radians(720.0)).view(), "000");
 }
 

@@ -10,7 +10,7 @@ import numpy as np
 import noise as N
 from glb import Glb
 from mesh import join, loft, shade
-from shapes import box, curve, cylinder, foil, sphere, tube
+from shapes import box, curve, cylinder, foil, round_rect, tube
 
 OUT = Path(__file__).resolve().parents[2] / "assets" / "models"
 BOW, STERN = -3.05, 2.5
@@ -86,6 +86,24 @@ def tubes():
     return join([skin] + rope)
 
 
+def cowl():
+    """Rounded, longest at its middle, its top sloping down aft, with a light band around it."""
+    levels = (  # height, width, length, middle along z
+        (0.515, 0.28, 0.44, 2.85), (0.53, 0.31, 0.48, 2.85), (0.56, 0.35, 0.54, 2.86), (0.625, 0.385, 0.60, 2.87), (0.63, 0.39, 0.60, 2.87),
+        (0.675, 0.395, 0.61, 2.87), (0.68, 0.39, 0.61, 2.87), (0.80, 0.385, 0.61, 2.87), (0.91, 0.36, 0.56, 2.855), (0.98, 0.32, 0.48, 2.835),
+        (1.015, 0.27, 0.40, 2.82), (1.025, 0.20, 0.31, 2.81),
+    )
+    rings = []
+    for y, width, length, middle in levels:
+        xz = round_rect(width, length, 0.42 * width, 5)
+        slope = np.clip((y - 0.70) / 0.30, 0, 1) * 0.16 * (xz[:, 1] + 0.25)
+        rings.append(np.column_stack([xz[:, 0], y - slope, xz[:, 1] + middle]))
+    part = shade(loft(rings), 40)
+    band = (part.pos[:, 1] > 0.627) & (part.pos[:, 1] < 0.678)
+    part.col = colour(np.where(band[:, None], (0.60, 0.61, 0.62), (0.035, 0.037, 0.042)))
+    return part
+
+
 def motor():
     """An outboard motor of some 90 kW: cowl, leg, gear case, skeg, propeller of three blades."""
     leg = foil(
@@ -98,9 +116,7 @@ def motor():
     plate = box(0.24, 0.018, 0.46).at(0, -0.30, 2.90)
     case = tube([(0, -0.52, z) for z in np.linspace(2.60, 3.12, 12)], 0.075 * np.sqrt(np.clip(1 - np.linspace(-1, 0.55, 12) ** 4, 0.02, 1)), 16)
     skeg = foil([((0, -0.55, 2.72), (0, -0.56, 3.00), 0.10, (1, 0, 0)), ((0, -0.78, 2.88), (0, -0.78, 3.00), 0.10, (1, 0, 0))])
-    cowl = sphere(1.0, 20, 14)
-    cowl.pos = cowl.pos * [0.24, 0.34, 0.36] + [0, 0.86, 2.86]
-    parts = [plain(p, (0.035, 0.037, 0.042)) for p in (leg, plate, case, skeg, cowl, box(0.30, 0.34, 0.16).at(0, 0.42, 2.58))]
+    parts = [cowl()] + [plain(p, (0.035, 0.037, 0.042)) for p in (leg, plate, case, skeg, box(0.30, 0.34, 0.16).at(0, 0.42, 2.58))]
     hub = tube([(0, -0.52, z) for z in (3.10, 3.16, 3.24, 3.27)], [0.062, 0.060, 0.048, 0.01], 14)
     blades = []
     for k in range(3):
