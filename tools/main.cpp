@@ -4,6 +4,7 @@
 #include <new>
 
 #include "engine/core/log.hpp"
+#include "engine/core/memory.hpp"
 #include "tools/neritic/commands.hpp"
 
 namespace {
@@ -39,6 +40,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  neritic::keep_freed_memory();
   try {
     return flushed(run(argc, argv));
   } catch (const std::bad_alloc&) {

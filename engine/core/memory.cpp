@@ -1,5 +1,7 @@
 #include "engine/core/memory.hpp"
 
+#include <malloc.h>
+
 #include <array>
 #include <cstdio>
 
@@ -14,6 +16,15 @@ std::uint64_t available_memory_bytes() {
     if (std::sscanf(line.data(), "MemAvailable: %llu kB", &kib) == 1) break;
   std::fclose(file);
   return std::uint64_t{kib} * 1024;
+}
+
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  constexpr int kMiB = 1 << 20;
+  mallopt(M_MMAP_THRESHOLD, 32 * kMiB);  // the most that it takes
+  mallopt(M_TRIM_THRESHOLD, 512 * kMiB);
+  mallopt(M_TOP_PAD, 4 * kMiB);
+#endif
 }
 
 }  // namespace neritic

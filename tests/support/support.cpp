@@ -6,8 +6,16 @@
 #include <cctype>
 #include <cstdlib>
 
+#include "engine/core/memory.hpp"
+
 namespace neritic::test {
 namespace fs = std::filesystem;
+namespace {
+
+// As the programs begin.
+[[maybe_unused]] const bool kept = (keep_freed_memory(), true);
+
+}  // namespace
 
 fs::path source_dir() {
   return NERITIC_SOURCE_DIR;

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "engine/core/memory.hpp"
 #include "engine/core/text.hpp"
 #include "tools/benchmark/groups.hpp"
 
@@ -144,5 +145,6 @@ int main_of(std::span<char* const> words) {
 }  // namespace neritic::bench
 
 int main(int argc, char** argv) {
+  neritic::keep_freed_memory();
   return neritic::bench::main_of({argv + 1, argv + argc});
 }

@@ -235,8 +235,8 @@ TEST_F(ServerTest, AClientWithManyRequestsIsRefusedBeyondABoundAndTheOthersGoOn)
   EXPECT_GT(done(*other, {{"op", "truth"}, {"agent", "rov"}}).map.at("values").size(), 10u);
   int refusals = 0, answers = 0;
   for (int i = 0; i < 502; ++i) {
-    const auto frames = flood->receive(20000);
-    if (!frames) break;
+    const auto frames = flood->receive(i == 0 ? 20000 : 3000);
+    if (!frames) break;  // the rest was lost on the way
     const json map = net::unpack(frames->front()).value();
     (map.at("ok").get<bool>() ? answers : refusals) += 1;
   }
