@@ -122,7 +122,8 @@ void add_mirror(Ping& ping, const Mirror& mirror, const scene::Sonar& sonar, con
   echo.water_sign = mirror.water_below ? 1.0f : -1.0f;
   echo.mirror_class = mirror.water_below ? 0u : scene::kClasses[0].id;
   // Out by the mirror and back directly, and the other way round: by reciprocity both have the same
-  // length, the same phase and the same amplitude at every scatterer, so that amplitudes add.
+  // length, the same phase and the same amplitude at every scatterer, so that amplitudes add
+  // (Akkermans, Wolf and Maynard 1986, Phys. Rev. Lett. 56, 1471).
   echo.ghost_weight =
       static_cast<float>(kGhostPaths * kGhostPaths * mirror.reflection * mirror.reflection);
   const auto& level = sonar.terms.level;

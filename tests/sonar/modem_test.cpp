@@ -216,7 +216,7 @@ TEST(Modem, ExtremesStayWhole) {
 
 // The knob, of a summer profile, in metres of range against the bent ray. Steep paths: the straight
 // line is nearly exact. Grazing ones: the quickest way runs along the warm water, and a straight
-// line errs by metres (DECISIONS.md).
+// line errs by metres.
 TEST(Modem, StraightPathsAreNearlyExactWhereTheyAreSteep) {
   ModemWater water;
   water.profile =
