@@ -1,4 +1,5 @@
-// `neritic_bench --filter` with an unknown name; needs no device, since names are checked first.
+// `neritic_bench`: names that no group has are refused, before any device is made; pictures keep
+// their bits.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -28,6 +29,17 @@ TEST(BenchmarkFilter, ANameThatNoGroupHasIsRefusedWithTheGroups) {
     NERITIC_ASSERT_OK(const std::string table, read_text(scratch / "out"));
     EXPECT_EQ(table, "") << flags;
   }
+}
+
+TEST(BenchmarkFilter, PicturesKeepTheirBitsWhateverElseIsAskedFor) {
+  const test::ScratchFolder scratch;
+  const std::string command =
+      NERITIC_BINARY_DIR "/tools/neritic_bench --once --filter camera_frame --assets " +
+      (test::source_dir() / "assets").string() + " > " + (scratch / "out").string() + " 2>&1";
+  const int status = std::system(command.c_str());
+  NERITIC_ASSERT_OK(const std::string said, read_text(scratch / "out"));
+  EXPECT_EQ(status, 0) << said;
+  EXPECT_EQ(said.find("FAILED"), std::string::npos) << said;
 }
 
 }  // namespace
