@@ -26,13 +26,12 @@ void Surface::add_triangles(const Model& model, const Mat4& world_from_model) {
     for (const Primitive& primitive :
          model.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
       if (primitive.topology != Topology::kTriangles) continue;
-      for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
-        Triangle triangle;
-        for (std::size_t k = 0; k < 3; ++k)
-          triangle[k] = Vec3(world_from_node *
-                             Vec4(Vec3(primitive.positions[primitive.indices[i + k]]), 1.0));
-        triangles_.push_back(triangle);
-      }
+      const auto first = static_cast<std::uint32_t>(corners_.size());
+      for (const auto& position : primitive.positions)
+        corners_.push_back(Vec3(world_from_node * Vec4(Vec3(position), 1.0)));
+      const auto& indices = primitive.indices;
+      for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
+        triangles_.push_back({first + indices[i], first + indices[i + 1], first + indices[i + 2]});
     }
   }
 }
@@ -43,8 +42,9 @@ std::size_t Surface::cell_of(double value_m, double min_m, double size_m) const 
 }
 
 Surface::Cells Surface::cells_of(const Triangle& t) const {
-  const auto [x0, x1] = std::minmax({t[0].x, t[1].x, t[2].x});
-  const auto [z0, z1] = std::minmax({t[0].z, t[1].z, t[2].z});
+  const Vec3 &a = corners_[t[0]], &b = corners_[t[1]], &c = corners_[t[2]];
+  const auto [x0, x1] = std::minmax({a.x, b.x, c.x});
+  const auto [z0, z1] = std::minmax({a.z, b.z, c.z});
   return {cell_of(x0, min_x_m_, cell_x_m_), cell_of(z0, min_z_m_, cell_z_m_),
           cell_of(x1, min_x_m_, cell_x_m_), cell_of(z1, min_z_m_, cell_z_m_)};
 }
@@ -52,7 +52,7 @@ Surface::Cells Surface::cells_of(const Triangle& t) const {
 void Surface::sort_into_cells() {
   Bounds bounds;
   for (const Triangle& triangle : triangles_)
-    for (const Vec3& corner : triangle) bounds.add(corner);
+    for (const std::uint32_t corner : triangle) bounds.add(corners_[corner]);
   if (!bounds.empty() && is_finite(bounds.min) && is_finite(bounds.max)) {
     // About two triangles a cell.
     side_ = std::clamp<std::size_t>(
@@ -87,7 +87,8 @@ std::optional<SurfacePoint> Surface::at(double x_m, double z_m) const {
       cell_of(z_m, min_z_m_, cell_z_m_) * side_ + cell_of(x_m, min_x_m_, cell_x_m_);
   std::optional<SurfacePoint> best;
   for (std::uint32_t i = first_[cell]; i < first_[cell + 1]; ++i) {
-    const auto& [a, b, c] = triangles_[items_[i]];
+    const Triangle& of = triangles_[items_[i]];
+    const Vec3 &a = corners_[of[0]], &b = corners_[of[1]], &c = corners_[of[2]];
     // Barycentric coordinates in the x-z plane, by signed areas.
     const double area = (b.x - a.x) * (c.z - a.z) - (c.x - a.x) * (b.z - a.z);
     if (area == 0.0) continue;

@@ -25,7 +25,7 @@ class Surface {
   std::size_t triangle_count() const { return triangles_.size(); }
 
  private:
-  using Triangle = std::array<Vec3, 3>;
+  using Triangle = std::array<std::uint32_t, 3>;  // corners, in corners_
   struct Cells {
     std::size_t x0, z0, x1, z1;
   };
@@ -34,6 +34,7 @@ class Surface {
   Cells cells_of(const Triangle& triangle) const;
   std::size_t cell_of(double value_m, double min_m, double size_m) const;
 
+  std::vector<Vec3> corners_;
   std::vector<Triangle> triangles_;
   std::size_t side_ = 1;  // cells along x and along z
   double min_x_m_ = 0, min_z_m_ = 0, cell_x_m_ = 1, cell_z_m_ = 1;
