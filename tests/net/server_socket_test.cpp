@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <thread>
 
 #include "engine/core/memory.hpp"
@@ -14,6 +15,8 @@
 
 namespace neritic::net {
 namespace {
+
+using namespace std::chrono_literals;
 
 Bytes frame_of(std::string_view text) {
   return std::as_bytes(std::span(text.data(), text.size()));
@@ -42,10 +45,12 @@ struct Echo {
                                        const std::string& server = {}) {
     return std::move(ClientSocket::connect({socket->address(), keys, server}).value());
   }
-  // The answer to a text, or nothing within some time.
-  std::optional<std::string> ask(ClientSocket& client, std::string_view text, int rounds = 100) {
+  // The answer to a text, or nothing within that time.
+  std::optional<std::string> ask(ClientSocket& client, std::string_view text,
+                                 std::chrono::milliseconds within = 5s) {
     client.send({frame_of(text)});
-    for (int i = 0; i < rounds; ++i) {
+    const auto end = std::chrono::steady_clock::now() + within;
+    while (std::chrono::steady_clock::now() < end) {
       serve();
       if (const auto frames = client.receive(1)) return text_of(frames->front());
     }
@@ -141,11 +146,11 @@ TEST(ServerSocket, HearsAClientWhoseKeyIsKnownAndNoOther) {
   EXPECT_EQ(echo.ask(*ada, "hello"), "hello");
   EXPECT_EQ(echo.names, std::vector<std::string>{"ada"});
   auto nobody = echo.client(make_key_pair().value(), server.public_z85);
-  EXPECT_EQ(echo.ask(*nobody, "hello", 10), std::nullopt);
+  EXPECT_EQ(echo.ask(*nobody, "hello", 200ms), std::nullopt);
   auto open = echo.client();
-  EXPECT_EQ(echo.ask(*open, "hello", 10), std::nullopt);
+  EXPECT_EQ(echo.ask(*open, "hello", 200ms), std::nullopt);
   auto misled = echo.client(known, make_key_pair()->public_z85);
-  EXPECT_EQ(echo.ask(*misled, "hello", 10), std::nullopt);
+  EXPECT_EQ(echo.ask(*misled, "hello", 200ms), std::nullopt);
   const auto counts = echo.socket->counts();
   EXPECT_GE(counts.not_known, 1u);
   EXPECT_GE(counts.no_greeting, 2u);
@@ -199,7 +204,7 @@ TEST(ServerSocket, TenThousandConnectionsThatSayNothingCrowdEachOtherOut) {
     most = std::max(most, resident_bytes());
   }
   auto late = echo.client();
-  EXPECT_EQ(echo.ask(*late, "late", 300), "late");
+  EXPECT_EQ(echo.ask(*late, "late", 20s), "late");
   EXPECT_EQ(echo.ask(*client, "after"), "after");
   EXPECT_GT(echo.socket->counts().connections.crowded_out, 100u);
   EXPECT_LT(most, before + (64u << 20));
@@ -278,7 +283,7 @@ TEST(ServerSocket, MoreClientsThanItTakesAreCut) {
     EXPECT_EQ(echo.ask(*clients.back(), "hello"), "hello");
   }
   auto fourth = echo.client();
-  EXPECT_EQ(echo.ask(*fourth, "hello", 10), std::nullopt);
+  EXPECT_EQ(echo.ask(*fourth, "hello", 200ms), std::nullopt);
   EXPECT_GE(echo.socket->counts().too_many, 1u);
   EXPECT_EQ(echo.ask(*clients.front(), "again"), "again");
 }
