@@ -207,7 +207,9 @@ TEST(ServerSocket, TenThousandConnectionsThatSayNothingCrowdEachOtherOut) {
   EXPECT_EQ(echo.ask(*late, "late", 20s), "late");
   EXPECT_EQ(echo.ask(*client, "after"), "after");
   EXPECT_GT(echo.socket->counts().connections.crowded_out, 100u);
+#ifndef __SANITIZE_ADDRESS__  // it keeps what was freed
   EXPECT_LT(most, before + (64u << 20));
+#endif
   EXPECT_EQ(echo.socket->clients(), 2u);
 }
 
