@@ -229,7 +229,7 @@ TEST_F(HistoryTest, WhatNoFrameDeclaresIsFreed) {
   EXPECT_EQ(found(texels, kSize), expected({3}, kSize));
 }
 
-// --- What is refused
+// --- Refusals
 
 struct HistoryMaker : GraphMaker {
   std::uint32_t last, next;

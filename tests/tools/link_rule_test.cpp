@@ -56,13 +56,22 @@ TEST(LinkRule, TheSimulationPartLinksNoPicture) {
   const Graph graph = link_graph();
   for (const char* target :
        {"neritic_samples", "neritic_simulation", "neritic_motion", "neritic_record", "neritic_rov",
-        "neritic_diver", "neritic_sim", "neritic_envs"}) {
+        "neritic_diver", "neritic_sim", "neritic_envs", "neritic_devices", "neritic_simulators"}) {
     ASSERT_TRUE(graph.contains(target)) << target;
     const auto linked = all_linked(graph, target);
     EXPECT_TRUE(linked.contains("neritic_core")) << target;
     for (const std::string& library : linked)
       EXPECT_FALSE(kPictures.contains(library)) << target << " links " << library;
   }
+}
+
+// The pictures of instruments are drawn on the CPU.
+TEST(LinkRule, InstrumentsNeedNoGpu) {
+  const auto linked = all_linked(link_graph(), "neritic_instruments");
+  EXPECT_TRUE(linked.contains("neritic_hud"));
+  for (const std::string& library : linked)
+    if (library != "neritic_hud" && library != "neritic_draw2d" && library != "Freetype::Freetype")
+      EXPECT_FALSE(kPictures.contains(library)) << library;
 }
 
 TEST(LinkRule, TheViewAloneLinksTheWindowAndTheLoopDoesNot) {

@@ -80,10 +80,10 @@ TEST(SavedState, GoesOnWithTheSameHashesFromAThousandRandomPlaces) {
 }
 
 // The second process is this program anew, which finds the folder named and dives no first dive.
-TEST(SavedState, GoesOnInAnotherProcessFromTwentyRandomPlaces) {
+TEST(SavedState, GoesOnInAnotherProcessFromAThousandRandomPlaces) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   constexpr const char* kFolder = "NERITIC_TEST_STATES";
-  constexpr std::uint64_t kSteps = 1200, kPlaces = 20, kOn = 60;
+  constexpr std::uint64_t kSteps = 1200, kPlaces = 1000, kOn = 60;
   const auto place = [](std::uint64_t i) { return random_bits({2, 7, 1}, i) % kSteps; };
   std::optional<test::ScratchFolder> scratch;
   if (std::getenv(kFolder) == nullptr) {
