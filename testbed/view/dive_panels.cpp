@@ -182,9 +182,9 @@ void draw_readout(const FreeCamera& camera, const PanelRect& rect, float scale) 
   const double depth_m = -camera.position_m().y;
   const std::string heading =
       fmt::format("heading {}\u00b0", hud::heading_text(radians(camera.heading_deg())).view());
-  const std::string text = depth_m >= 0.0
-                               ? fmt::format("depth {:5.2f} m    {}", depth_m, heading)
-                               : fmt::format("{:.2f} m above water    {}", -depth_m, heading);
+  const std::string text =
+      depth_m >= 0.0 ? fmt::format("depth {:>7}    {}", metres_text(depth_m, 2), heading)
+                     : fmt::format("{} above water    {}", metres_text(-depth_m, 2), heading);
   const float top = y + 34.0f * scale, height = 28.0f * scale;
   list.AddRectFilled(ImVec2(x - half, top), ImVec2(x + half, top + height), kPaper, 4.0f * scale);
   centered_text(list, x, top + 0.5f * (height - ImGui::GetTextLineHeight()), kInk, text);

@@ -23,7 +23,7 @@ SIDE = 64
 LEAST_SHARE, LEAST_CONTRAST, MOST_NOISE = 0.03, 7.5, 2.5
 # To learn from: crops of a class, and how the scene is opened, of one half of the scenes and of the other.
 LESSONS = [(20, {"margin": 1.5}), (20, {"margin": 1.5, "wide": True})]
-SCENES, STEPS = 104, 4000  # to learn from; of the training
+SCENES, STEPS = 200, 7000  # to learn from; of the training
 RANGES = {"depth_m": (4.0, 25.0), "fov_deg": (14.0, 35.0), "fish_scale": (2.0, 4.0), "fills": (0.35, 1.1), "sight": (0.5, 1.0), "down": 0.2}
 WIDE_RANGES = {"depth_m": (3.0, 30.0), "fov_deg": (12.0, 48.0), "fish_scale": (1.5, 4.5), "fills": (0.3, 1.3), "sight": (0.3, 1.0), "down": 0.3}
 FAR = [900.0, 900.0, -40.0]

@@ -16,8 +16,8 @@ constexpr double kDisplay_hz = 90.0;
 // The instruments are drawn in one of this number of frames.
 constexpr std::size_t kHudEvery = static_cast<std::size_t>(kDisplay_hz / kHudRate_hz);
 
-// The yardstick's time where a frame takes 1.1 ms: on one quiet core of an AMD EPYC. On a virtual
-// machine of 2 cores whose system calls take 1 us both take twice as long.
+// The yardstick's time where a frame takes 1.1 ms, as on one quiet core of an AMD EPYC; from their
+// ratio on a virtual machine whose system calls take 1 us, where both take 1.9 times as long.
 constexpr double kYardstick_ms = 0.12;
 
 // Simulated time at the display's rate: so much passes with each frame, however long the device

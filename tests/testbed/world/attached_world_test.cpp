@@ -26,7 +26,8 @@ class AttachedWorld : public test::GpuTest {
         (test::source_dir() / "assets/vehicles/bluerov2_heavy_dynamics.toml").string();
     NERITIC_ASSERT_STATUS(write_text(
         path_,
-        "[physics]\n[sun]\nelevation_deg = 60\n[water]\ntype = \"IB\"\n[[vehicles]]\nname = \"rov\"\nshape = \"box\"\n"
+        "[physics]\n[sun]\nelevation_deg = 60\n[water]\ntype = \"IB\"\n[[vehicles]]\nname = "
+        "\"rov\"\nshape = \"box\"\n"
         "dynamics = \"" +
             dynamics +
             "\"\nposition_m = [0, -6, 0]\n[[vehicles.cameras]]\nname = \"eye\"\nwidth = 48\n"
