@@ -60,6 +60,9 @@ struct DisplayFrame {
   // When the picture will be seen, on the host clock. Absent: no screen paces the frames, so that
   // the program's clock does.
   std::optional<TimeNs> display_at_ns;
+  // Between two pictures of the screen, above 0; absent beside an absent display_at_ns, and while
+  // nothing is shown.
+  std::optional<TimeNs> period_ns;
   // Where the display tracks its wearer's head; absent: the program's camera is the head.
   std::optional<Pose> world_from_head;
   Tracked tracked;

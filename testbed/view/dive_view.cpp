@@ -10,6 +10,7 @@ namespace neritic::testbed {
 static_assert(xr::kMostHiddenCorners <= render::kMostHidden);
 namespace {
 
+constexpr TimeNs kUnpaced_ns = 16'666'667;  // the period where no screen paces the frames
 constexpr double kSpeeds[] = {0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0};
 
 std::uint32_t scaled(std::uint32_t pixels, double scale) {
@@ -72,18 +73,23 @@ Result<xr::FrameVerdict> DiveView::begin_frame() {
   elapsed_s_ = last_frame_ns_ == 0 ? 0.0 : 1e-9 * static_cast<double>(now - last_frame_ns_);
   if (last_frame_ns_ != 0 && shown()) times_.add_frame(elapsed_s_ * 1e3, now);
   last_frame_ns_ = shown() ? now : 0;  // a pause is no slow frame
-  if (shown() && !governor_ && options_.budget_ms > 0.0) govern();
+  if (shown() && options_.governed) govern();
   return frame_.verdict;
 }
 
-// From the first frame that is shown: only then the size of the views is known.
+// From the first frame that is shown: only then the size of the views is known. A display may get
+// faster later. One that gets slower keeps its budget: a runtime halves its rate where frames are
+// late, and a budget that grew with it would keep them late.
 void DiveView::govern() {
+  const double period_ms = 1e-6 * static_cast<double>(frame_.period_ns.value_or(kUnpaced_ns));
+  const double budget_ms = std::max(period_ms, options_.least_budget_ms);
+  if (governor_) return governor_->shorten_budget(budget_ms);
   double pixels = 0.0;
   for (const xr::ViewGroup& group : frame_.groups)
     pixels +=
         static_cast<double>(group.width) * group.height * static_cast<double>(group.views.size());
   const bool cpu = session_.device().info().kind == "CPU";
-  governor_.emplace(options_.budget_ms, cpu ? first_rung_on_cpu(pixels) : 0);
+  governor_.emplace(budget_ms, cpu ? first_rung_on_cpu(pixels) : 0);
 }
 
 // The lab's frame where the scene says where that lies; else the eyes of the diver who is worn;

@@ -33,8 +33,9 @@ struct DiveViewOptions {
   std::filesystem::path screenshot;   // of the last frame; empty: none
   bool may_fly = true;                // a vehicle by hand; not in a replay
   std::optional<DiveHudOptions> hud;  // instruments of a diver; needs physics with that diver
-  // The time for a frame: where the machine needs longer, quality comes down. 0: it stays full.
-  double budget_ms = 0.0;
+  // Where the machine needs longer for a frame than the display's period, quality comes down.
+  bool governed = false;
+  double least_budget_ms = 0.0;    // that quality is asked for, however short the period is
   sim::RunClock* clock = nullptr;  // of the run, for keys that stop or speed it up
   double frame_s = 1.0 / 30.0;     // that a step of time shows
   bool timeline = false;           // keep each frame's phases
@@ -78,6 +79,8 @@ class DiveView final : public FrameView {
   // Records by key: to be given each step; nullptr: nothing is recorded by key.
   StepSink* recorder() { return keeper_ ? &keeper_->sink() : nullptr; }
   const DiveTimes& times() const { return times_; }
+  // The time for a frame; 0: quality is full, or nothing was shown yet.
+  double budget_ms() const { return governor_ ? governor_->budget_ms() : 0.0; }
   const FrameTimeline& timeline() const { return timeline_; }
   const ViewChoice& choice() const { return choice_; }
   // How the window looks now, but for its size; nothing: it has no panels.

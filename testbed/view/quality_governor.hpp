@@ -3,6 +3,7 @@
 // each time, so that the picture does not swing. Plain value; rendering thread.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -55,6 +56,8 @@ class QualityGovernor {
   const Quality& quality() const { return quality_rungs()[rung_]; }
   std::size_t rung() const { return rung_; }
   double budget_ms() const { return budget_ms_; }
+  // A longer one than now changes nothing.
+  void shorten_budget(double budget_ms) { budget_ms_ = std::min(budget_ms_, budget_ms); }
 
  private:
   static constexpr std::size_t kFrames = 5;  // a decision's: the middle one counts

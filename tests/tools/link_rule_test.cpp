@@ -70,8 +70,10 @@ TEST(LinkRule, InstrumentsNeedNoGpu) {
   const auto linked = all_linked(link_graph(), "neritic_instruments");
   EXPECT_TRUE(linked.contains("neritic_hud"));
   for (const std::string& library : linked)
-    if (library != "neritic_hud" && library != "neritic_draw2d" && library != "Freetype::Freetype")
+    if (library != "neritic_hud" && library != "neritic_draw2d" &&
+        library != "Freetype::Freetype") {
       EXPECT_FALSE(kPictures.contains(library)) << library;
+    }
 }
 
 TEST(LinkRule, TheViewAloneLinksTheWindowAndTheLoopDoesNot) {

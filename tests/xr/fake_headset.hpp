@@ -26,7 +26,8 @@ class FakeHeadset final : public Display {
     std::function<Pose(std::uint64_t frame)> stage_from_head;
     std::function<bool(std::uint64_t frame)> worn;  // else nobody would see the frame
     TimeNs period_ns = 11'111'111;
-    std::uint64_t fails_at = UINT64_MAX;  // the frame whose layers it refuses
+    std::uint64_t fails_at = UINT64_MAX;                        // the frame whose layers it refuses
+    std::function<TimeNs(std::uint64_t frame)> told_period_ns;  // else period_ns
   };
 
   static Result<std::unique_ptr<FakeHeadset>> create(gpu::Device& device, Options options) {
@@ -66,6 +67,8 @@ class FakeHeadset final : public Display {
     frame.verdict =
         !options_.worn || options_.worn(frame_) ? FrameVerdict::kDraw : FrameVerdict::kHidden;
     frame.display_at_ns = static_cast<TimeNs>(frame_) * options_.period_ns;
+    frame.period_ns =
+        options_.told_period_ns ? options_.told_period_ns(frame_) : options_.period_ns;
     frame.world_from_head = world_from_stage * options_.stage_from_head(frame_);
     frame.groups = options_.groups;
     ++frame_;

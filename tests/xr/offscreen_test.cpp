@@ -18,6 +18,7 @@ TEST_F(OffscreenDisplayTest, ItNeitherWaitsNorSaysWhenAFrameIsSeen) {
     NERITIC_ASSERT_OK(const DisplayFrame frame, display->begin_frame({}));
     EXPECT_EQ(frame.verdict, FrameVerdict::kDraw);
     EXPECT_FALSE(frame.display_at_ns);
+    EXPECT_FALSE(frame.period_ns);
     NERITIC_ASSERT_STATUS(display->end_frame(false));
   }
 }

@@ -175,16 +175,16 @@ std::string unasked_hud(const Screen& screen) {
   return screen.overlay ? "corner" : "";
 }
 
-// The wanted time of a frame, ms; 0: quality stays full, whatever a frame takes.
-double frame_budget_ms(const DiveFlags& flags, const Screen& screen) {
-  // 20 pictures a second with room for what a governor lets pass
-  // (testbed/view/quality_governor.cpp).
-  constexpr double kSoftware_ms = 46.0, kUsualRefresh_hz = 60.0, kHeadsetRefresh_hz = 90.0;
-  if (flags.quality.empty() ? flags.headless : flags.quality == "full") return 0.0;
-  const double hz = screen.window ? screen.window->refresh_hz() : flags.refresh_hz;
-  const double usual_hz = screen.headset ? kHeadsetRefresh_hz : kUsualRefresh_hz;
-  const double period_ms = 1e3 / (hz > 0.0 ? hz : usual_hz);
-  return screen.device->info().kind == "CPU" ? std::max(period_ms, kSoftware_ms) : period_ms;
+// Whether quality comes down for a display's rate.
+bool governed(const DiveFlags& flags) {
+  return flags.quality.empty() ? !flags.headless : flags.quality != "full";
+}
+
+// 20 pictures a second in software, with room for what a governor lets pass
+// (testbed/view/quality_governor.cpp).
+double least_budget_ms(const Screen& screen) {
+  constexpr double kSoftware_ms = 46.0;
+  return screen.device->info().kind == "CPU" ? kSoftware_ms : 0.0;
 }
 
 // The run's state and recording by key.
@@ -285,7 +285,8 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
                                 .screenshot = flags.screenshot,
                                 .may_fly = !replay,
                                 .hud = hud,
-                                .budget_ms = frame_budget_ms(flags, screen),
+                                .governed = governed(flags),
+                                .least_budget_ms = least_budget_ms(screen),
                                 .clock = clock,
                                 .frame_s = 1.0 / camera.rate_hz,
                                 .timeline = !flags.timeline.empty(),
@@ -374,7 +375,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
     NERITIC_TRY_STATUS(write_timeline(
         flags.timeline,
         fmt::format("Frames of {}, {}", session->scene().title, screen.device->info().name),
-        frame_budget_ms(flags, screen), view->timeline()));
+        view->budget_ms(), view->timeline()));
   if (loop.interrupted())
     return failure(ErrorCode::kInterrupted,
                    "interrupted after {:.4g} s; everything up to then is written", loop.wall_s());

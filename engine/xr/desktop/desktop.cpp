@@ -62,7 +62,8 @@ Result<DisplayFrame> DesktopDisplay::begin_frame(const Pose&) {
     acquired_ = outcome == AcquireOutcome::kReady;
   }
   // The next refresh at the earliest; one period is the best guess without present timing.
-  frame.display_at_ns = now_ns() + std::llround(1e9 / window_.refresh_hz());
+  frame.period_ns = std::llround(1e9 / window_.refresh_hz());
+  frame.display_at_ns = now_ns() + *frame.period_ns;
   if (!acquired_) {
     std::this_thread::sleep_for(kRetry);
     return frame;

@@ -18,6 +18,13 @@ constexpr std::chrono::milliseconds kIdle{10};
 // Between two tries to reach a runtime that went away.
 constexpr TimeNs kRetry_ns = 500'000'000;
 
+// Between two pictures: what the runtime says, where that can be a screen's, else 90 a second.
+TimeNs period_of(const XrFrameState& state) {
+  constexpr TimeNs kLeast_ns = 1'000'000, kMost_ns = 100'000'000, kUnknown_ns = 11'111'111;
+  const TimeNs told_ns = state.predictedDisplayPeriod;
+  return told_ns >= kLeast_ns && told_ns <= kMost_ns ? told_ns : kUnknown_ns;
+}
+
 class OpenXrHeadset final : public Headset {
  public:
   OpenXrHeadset(const HeadsetOptions& options, ActionTable actions)
@@ -197,6 +204,7 @@ Status OpenXrHeadset::begin(DisplayFrame& frame) {
   near_m_.assign(parts_.views->swapchains().size(), 0.0);
   projected_.assign(near_m_.size(), false);
   frame.display_at_ns = runtime_->to_host(display_at_);
+  frame.period_ns = period_of(state);
   if (!state.shouldRender) return {};
   NERITIC_TRY(const bool known, parts_.views->locate(display_at_));
   if (!known) return {};

@@ -56,14 +56,17 @@ class HeadsetRun : public ::testing::Test {
         .value();
   }
   std::uint64_t shown() const { return shown_; }
+  // Its quality gives way where frames take longer than budget_ms, as it was in the last frame.
+  void govern() { governed_ = true; }
+  double budget_ms() const { return budget_ms_; }
 
  private:
   Status dive_on(xr::Headset& headset, gpu::Device& device, const scene::Scene& scene,
                  std::uint64_t frames) {
     NERITIC_TRY_STATUS(headset.attach(device));
     NERITIC_TRY(const auto session, Session::create(device, scene));
-    NERITIC_TRY(const auto view,
-                DiveView::create(*session, headset, nullptr, physics_, {.hud = hud_}));
+    NERITIC_TRY(const auto view, DiveView::create(*session, headset, nullptr, physics_,
+                                                  {.hud = hud_, .governed = governed_}));
     std::vector<SampleSource*> sources;
     if (view->wearer()) sources.push_back(view->wearer());
     if (source_) sources.push_back(source_);
@@ -78,6 +81,7 @@ class HeadsetRun : public ::testing::Test {
                         }}});
     const Status status = loop.run();
     shown_ = loop.frames();
+    budget_ms_ = view->budget_ms();
     if (loop.interrupted()) return failure(ErrorCode::kInterrupted, "it did not end");
     return status;
   }
@@ -87,11 +91,12 @@ class HeadsetRun : public ::testing::Test {
   gpu::ValidationLog vulkan_;
   std::vector<std::string> openxr_;
   std::uint64_t shown_ = 0;
+  double budget_ms_ = 0.0;
   LivePhysics* physics_ = nullptr;
   std::optional<DiveHudOptions> hud_;
   SampleSource* source_ = nullptr;
   double seconds_ = 0.0;
-  bool layer_ = true, validation_ = true;
+  bool layer_ = true, validation_ = true, governed_ = false;
 };
 
 }  // namespace neritic::testbed

@@ -23,6 +23,18 @@ TEST_F(HeadsetLife, ADiveIsShownFrameByFrameUntilItEnds) {
   EXPECT_EQ(shown(), 4u);
 }
 
+TEST_F(HeadsetLife, TheRuntimesPeriodIsTheBudgetOfAFrame) {
+  govern();
+  {
+    fakes::FakeHeadset fake(kSmall + "period 0.0125\n");
+    NERITIC_ASSERT_STATUS(dive(scene(), 3));
+    EXPECT_DOUBLE_EQ(budget_ms(), 12.5);
+  }
+  fakes::FakeHeadset fake(kSmall + "period 0.5\n");  // no screen's
+  NERITIC_ASSERT_STATUS(dive(scene(), 3));
+  EXPECT_NEAR(budget_ms(), 1e3 / 90.0, 1e-3);
+}
+
 TEST_F(HeadsetLife, TwoDivesRunOneAfterTheOther) {
   fakes::FakeHeadset fake(kSmall);
   NERITIC_ASSERT_STATUS(dive(scene(), 2));

@@ -83,6 +83,29 @@ TEST_F(HeadsetView, AFrameThatFailsIsEndedAndTheViewWaitsForThoseInFlight) {
   EXPECT_GE(completed, 2u);
 }
 
+// A runtime that halves its rate, since frames were late, gives no longer budget.
+TEST_F(HeadsetView, TheBudgetIsTheShortestPeriodThatTheDisplayTold) {
+  NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene()));
+  constexpr TimeNs kTold_ns[] = {12'500'000, 12'500'000, 25'000'000, 8'000'000, 12'500'000};
+  constexpr double kBudget_ms[] = {12.5, 12.5, 12.5, 8.0, 8.0};
+  NERITIC_ASSERT_OK(const auto headset,
+                    xr::FakeHeadset::create(device(), {.groups = {xr::eye_pair(12, 11)},
+                                                       .stage_from_head = xr::head_at,
+                                                       .worn = {},
+                                                       .told_period_ns = [&](std::uint64_t i) {
+                                                         return kTold_ns[i];
+                                                       }}));
+  NERITIC_ASSERT_OK(const auto view,
+                    DiveView::create(*session, *headset, nullptr, nullptr, {.governed = true}));
+  EXPECT_EQ(view->budget_ms(), 0.0);
+  for (std::size_t i = 0; i < std::size(kTold_ns); ++i) {
+    NERITIC_ASSERT_OK(const xr::FrameVerdict verdict, view->begin_frame());
+    EXPECT_EQ(verdict, xr::FrameVerdict::kDraw);
+    EXPECT_DOUBLE_EQ(view->budget_ms(), kBudget_ms[i]) << i;
+    NERITIC_ASSERT_STATUS(view->end_frame({}));
+  }
+}
+
 TEST_F(HeadsetView, AStereoPairIsDrawnFromTheTrackedHead) {
   expect_all_views({xr::eye_pair(120, 110)});
 }
