@@ -17,7 +17,20 @@ layout(set = 0, binding = kExposureData, scalar) uniform Data { ShutterParams sh
 
 ivec3 inside(vec2 px, int layer, ivec2 size) { return ivec3(clamp(ivec2(floor(px)), ivec2(0), size - 1), layer); }
 
-vec2 motion_at(ivec3 at) { return texelFetch(motion_image, at, 0).xy; }
+// What will be behind the camera has none.
+vec2 motion_at(ivec3 at) {
+  vec2 motion = texelFetch(motion_image, at, 0).xy;
+  return any(isnan(motion)) || any(isinf(motion)) ? vec2(0.0) : motion;
+}
+
+// The share of the sensor's rows above that of a point of the picture.
+float row_share(vec2 share) {
+  if (shutter.by_lens == 0u) return share.y;
+  vec2 at = clamp(share, 0.0, 1.0) * float(kRowSteps), low = min(floor(at), vec2(float(kRowSteps - 1u))), part = at - low;
+  uint i = uint(low.y) * (kRowSteps + 1u) + uint(low.x);
+  return mix(mix(shutter.row[i], shutter.row[i + 1u], part.x),
+             mix(shutter.row[i + kRowSteps + 1u], shutter.row[i + kRowSteps + 2u], part.x), part.y);
+}
 
 vec3 picture(vec2 px, int layer, ivec2 size) {
   vec2 at = px - 0.5, low = floor(at), part = at - low;
@@ -32,7 +45,7 @@ void main() {
   if (at.x >= size.x || at.y >= size.y) return;
   vec2 px = vec2(at.xy) + 0.5;
   // When the row is exposed, against the frame's instant; in times to the next frame.
-  float row_time = shutter.readout * (px.y / float(size.y) - 0.5);
+  float row_time = shutter.readout * (row_share(px / vec2(size)) - 0.5);
   vec2 motion = motion_at(at);
   // Where that came from at the row's time: once more, since what moves there may move otherwise.
   for (int i = 0; i < 2; ++i) {

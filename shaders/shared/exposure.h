@@ -25,11 +25,17 @@ NERITIC_INLINE float spot_radius_px(FocusParams focus, float planar_m) {
   return min(focus.opening_px * abs(1.0f / planar_m - 1.0f / focus.focus_m), focus.widest_px);
 }
 
+// Steps of a grid over the picture before the lens.
+NERITIC_CONST uint kRowSteps = 32;
+
 struct ShutterParams {
   float exposed;  // share of the time to the next frame that a row is exposed
   float readout;  // and that the rows are read one after another, from the first to the last
   uint samples;
   float farthest_px;  // no sample is farther off along the motion
+  uint by_lens;       // 0: the sensor's rows are the picture's; 1: row[] tells which
+  // The sensor's row, as a share of its height, that shows each point of the grid: row by row.
+  float row[(kRowSteps + 1) * (kRowSteps + 1)];
 };
 
 NERITIC_CONST uint kExposureHdr = 0;

@@ -74,12 +74,26 @@ void Session::dim_lamp(std::size_t index, double share) {
 
 namespace {
 
-// Whether some picture needs motion for itself.
-bool shutter_opens(const scene::Scene& scene, const FrameRequest& request) {
-  for (std::size_t k = 0; k < request.cameras.size(); ++k)
-    if (request.camera_capture(k).color && scene.cameras[request.cameras[k]].terms.shutter)
-      return true;
-  return false;
+// Motion is even over such a time, whatever happens.
+constexpr double kEvenMotion_s = 0.05;
+
+// From the first row's beginning to the last one's end, of the slowest shutter of the pictures that
+// need motion for themselves; absent: none does.
+std::optional<double> exposed_s(const scene::Scene& scene, const FrameRequest& request) {
+  std::optional<double> most_s;
+  for (std::size_t k = 0; k < request.cameras.size(); ++k) {
+    const std::optional<scene::Shutter>& shutter = scene.cameras[request.cameras[k]].terms.shutter;
+    if (request.camera_capture(k).color && shutter)
+      most_s = std::max(most_s.value_or(0.0), shutter->exposure_s + shutter->readout_s);
+  }
+  return most_s;
+}
+
+// Where motion leads to: the next frame. If only shutters need it, and that is far away, then no
+// farther than they see.
+double motion_until_s(const FrameRequest& request, std::optional<double> exposed_s) {
+  if (!exposed_s || request.wants_motion()) return request.next_time_s;
+  return std::min(request.next_time_s, request.time_s + std::max(*exposed_s, kEvenMotion_s));
 }
 
 }  // namespace
@@ -128,9 +142,10 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
   for (const ViewsRequest& set : request.views)
     if (set.views.worn_object != render::ViewSet::kWornByNobody)
       worn.push_back(set.views.worn_object);
+  const std::optional<double> exposed = exposed_s(scene_, request);
   work.state =
-      render::evaluate_frame(motion, *gpu_scene_, request.time_s, request.next_time_s,
-                             request.wants_motion() || shutter_opens(scene_, request), worn);
+      render::evaluate_frame(motion, *gpu_scene_, request.time_s, motion_until_s(request, exposed),
+                             request.wants_motion() || exposed.has_value(), worn);
   if (request.capture.poses && request.capture.to_host)
     work.poses = motions_of(participants_of(scene_), motion, request.time_s);
   NERITIC_TRY(const render::DeformedGeometry deformed,

@@ -107,6 +107,25 @@ Result<CameraHdr> declare_camera(const FrameParts& frame, const std::string& pre
   return out;
 }
 
+// Which of a lens's rows shows each part of the picture before it. Where the lens shows nothing of
+// it, as without a lens.
+void add_rows(const scene::Lens& lens, const scene::LensView& view, std::uint32_t height,
+              shared::ShutterParams& params) {
+  params.by_lens = 1;
+  const Intrinsics &from = view.source, &to = view.lens;
+  std::size_t out = 0;
+  for (std::uint32_t j = 0; j <= shared::kRowSteps; ++j)
+    for (std::uint32_t i = 0; i <= shared::kRowSteps; ++i) {
+      const glm::dvec2 share = glm::dvec2(i, j) / double(shared::kRowSteps);
+      const glm::dvec2 plane((share.x * view.width - from.cx) / from.fx,
+                             (share.y * view.height - from.cy) / from.fy);
+      const double row = scene::unfolded(lens, plane)
+                             ? (to.fy * scene::through_lens(lens, plane).y + to.cy) / height
+                             : share.y;
+      params.row[out++] = static_cast<float>(std::clamp(row, 0.0, 1.0));
+    }
+}
+
 // Focus and shutter, before the lens.
 Result<graph::ImageHandle> declare_focus_and_shutter(const FrameParts& frame,
                                                      const std::string& prefix,
@@ -130,11 +149,12 @@ Result<graph::ImageHandle> declare_focus_and_shutter(const FrameParts& frame,
   const double step_s = frame.state.next_time_s - frame.state.time_s;
   if (terms.shutter && g.motion && step_s > 0.0) {
     const scene::Shutter& shutter = *terms.shutter;
-    NERITIC_TRY(hdr, frame.renderer.declare_shutter(
-                         frame.graph, prefix, hdr, g,
-                         {static_cast<float>(shutter.exposure_s / step_s),
-                          static_cast<float>(shutter.readout_s / step_s), shutter.samples,
-                          0.25f * static_cast<float>(g.width)}));
+    shared::ShutterParams params{.exposed = static_cast<float>(shutter.exposure_s / step_s),
+                                 .readout = static_cast<float>(shutter.readout_s / step_s),
+                                 .samples = shutter.samples,
+                                 .farthest_px = 0.25f * static_cast<float>(g.width)};
+    if (picture.lens) add_rows(*terms.lens, *picture.lens, picture.height, params);
+    NERITIC_TRY(hdr, frame.renderer.declare_shutter(frame.graph, prefix, hdr, g, params));
   }
   return hdr;
 }

@@ -107,7 +107,7 @@ TEST_F(ExposurePasses, WhatMovesBecomesARampAndARollingShutterLeansIt) {
                 });
   };
   // 8 pixels to the next frame, open for half of that: 4 pixels.
-  const Made blurred = exposed({0.5f, 0.0f, 32, 32.0f});
+  const Made blurred = exposed({.exposed = 0.5f, .samples = 32, .farthest_px = 32.0f});
   for (int i = -3; i <= 2; ++i) {
     const double middle = i + 0.5;  // of the pixel, from the edge
     EXPECT_NEAR(blurred.at(static_cast<std::uint32_t>(64 + i), 10),
@@ -116,9 +116,33 @@ TEST_F(ExposurePasses, WhatMovesBecomesARampAndARollingShutterLeansIt) {
   }
   EXPECT_NEAR(blurred.edge(10), kEdge, 0.05);
   // Rows are read over one frame's time: the last one sees it 8 pixels on from the first.
-  const Made leant = exposed({0.01f, 1.0f, 4, 32.0f});
+  shared::ShutterParams rolling{
+      .exposed = 0.01f, .readout = 1.0f, .samples = 4, .farthest_px = 32.0f};
+  const Made leant = exposed(rolling);
   for (const std::uint32_t y : {0u, 16u, 32u, 63u})
     EXPECT_NEAR(leant.edge(y), kEdge + 8.0 * ((y + 0.5) / kHigh - 0.5), 0.1) << y;
+  // Behind a lens that shows only the picture's middle half.
+  rolling.by_lens = 1;
+  for (std::uint32_t j = 0; j <= shared::kRowSteps; ++j)
+    for (std::uint32_t i = 0; i <= shared::kRowSteps; ++i)
+      rolling.row[j * (shared::kRowSteps + 1) + i] =
+          std::clamp(2.0f * static_cast<float>(j) / shared::kRowSteps - 0.5f, 0.0f, 1.0f);
+  const Made zoomed = exposed(rolling);
+  for (const std::uint32_t y : {4u, 20u, 32u, 42u, 60u})
+    EXPECT_NEAR(zoomed.edge(y),
+                kEdge + 8.0 * (std::clamp(2.0 * (y + 0.5) / kHigh - 0.5, 0.0, 1.0) - 0.5), 0.1)
+        << y;
+}
+
+TEST_F(ExposurePasses, WhatHasNoMotionStaysAsItIs) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Made made(device(), Vec4(nan, nan, 0.0, 0.0),
+                  [](render::Renderer& r, auto& graph, auto hdr, auto& g) {
+                    return r.declare_shutter(
+                        graph, "", hdr, g,
+                        {.exposed = 0.5f, .readout = 1.0f, .samples = 8, .farthest_px = 32.0f});
+                  });
+  for (const std::uint32_t y : {0u, 31u, 63u}) EXPECT_NEAR(made.edge(y), kEdge, 1e-3) << y;
 }
 
 }  // namespace
