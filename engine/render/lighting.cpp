@@ -184,11 +184,20 @@ void add_model_sun(shared::Lighting& light, const PlacedLight& placed) {
   light.surface_irradiance = placed.light->color * static_cast<float>(irradiance_lx);
 }
 
-// A strobe flashes at the start of each period.
-bool burns(const scene::Lamp& lamp, double time_s) {
-  if (lamp.strobe_period_s <= 0.0) return true;
-  const double since_s = time_s - std::floor(time_s / lamp.strobe_period_s) * lamp.strobe_period_s;
-  return since_s < lamp.strobe_flash_s;
+// The share of an exposure, round its middle, in which a strobe burns: it flashes at the start of
+// each period.
+double burning_share(const scene::Lamp& lamp, double time_s, double exposed_s) {
+  if (lamp.strobe_period_s <= 0.0) return 1.0;
+  const double period_s = lamp.strobe_period_s;
+  const auto since_s = [&](double s) { return s - std::floor(s / period_s) * period_s; };
+  if (exposed_s <= 0.0) return since_s(time_s) < lamp.strobe_flash_s ? 1.0 : 0.0;
+  // How long it has burnt since the period's start in which the exposure begins.
+  const double flash_s = std::min(lamp.strobe_flash_s, period_s);
+  const auto burnt_s = [&](double s) {
+    return std::floor(s / period_s) * flash_s + std::min(since_s(s), flash_s);
+  };
+  const double begin_s = since_s(time_s - 0.5 * exposed_s);
+  return std::clamp((burnt_s(begin_s + exposed_s) - burnt_s(begin_s)) / exposed_s, 0.0, 1.0);
 }
 
 void add_lamp(shared::Lighting& light, const scene::Lamp& lamp, const Pose& pose,
@@ -239,7 +248,7 @@ Vec3 to_sun_in_air(const scene::Sun& sun) {
 
 Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameState& state,
                                        const Vec3& origin_m, const scene::Exposure& exposure,
-                                       bool has_emission) {
+                                       bool has_emission, double exposed_s) {
   shared::Lighting light{};
   light.origin_depth_m = static_cast<float>(-origin_m.y);
   light.sun_cosine = 1.0f;
@@ -282,7 +291,8 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameSta
                 state.world_from_lamp.size(), scene.lamps.size());
   for (std::size_t i = 0; i < scene.lamps.size(); ++i) {
     add_lamp(light, scene.lamps[i], state.world_from_lamp[i], origin_m);
-    if (!burns(scene.lamps[i], state.time_s)) light.lamps[i].intensity_cd = Vec3f(0.0f);
+    light.lamps[i].intensity_cd *=
+        static_cast<float>(burning_share(scene.lamps[i], state.time_s, exposed_s));
   }
   for (const PlacedLight& placed : state.lights)
     if (placed.light->kind == scene::Light::Kind::kDirectional)

@@ -17,10 +17,11 @@ inline constexpr double kClearDay_lx = 100000.0;
 inline constexpr double kSunShare = 0.85;
 
 // kBadInput for an unknown water type or too many lamps. exposure: of the camera that looks. Lamps
-// and models' lights shine from where they are in the state, at its time.
+// and models' lights shine from where they are in the state, at its time. exposed_s: how long,
+// round that time, a strobe's flashes add to the picture; 0: it burns at that instant or does not.
 Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameState& state,
                                        const Vec3& origin_m, const scene::Exposure& exposure,
-                                       bool has_emission);
+                                       bool has_emission, double exposed_s = 0.0);
 
 // Unit, towards the scene's sun above the surface.
 Vec3 to_sun_in_air(const scene::Sun& sun);

@@ -141,7 +141,7 @@ Status PanopticFiles::add(const std::filesystem::path& folder, const std::string
                      {"category_id", s.class_id},
                      {"area", s.area},
                      {"bbox", {s.left, s.top, s.right - s.left + 1, s.bottom - s.top + 1}},
-                     {"iscrowd", id >= 65536u ? 1 : 0}});
+                     {"iscrowd", 0}});  // stuff is told by its category
   const nlohmann::json annotation{{"image_id", image_count_},
                                   {"file_name", (folder / "panoptic.png").generic_string()},
                                   {"segments_info", infos}};

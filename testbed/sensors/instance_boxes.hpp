@@ -39,8 +39,8 @@ struct InstanceBox {
   PixelBox seen;                 // of its visible pixels
   std::uint32_t seen_px = 0;
   double truncated = 0.0;     // share of `whole` outside of the picture
-  double occluded = 0.0;      // share of its vertices in the picture that something else hides
-  std::vector<Vec3f> points;  // up to 256 vertices, view axes
+  double occluded = 0.0;      // share of its surface in the picture that something else hides
+  std::vector<Vec3f> points;  // of that surface, even over the picture; view axes
 };
 
 // How points in view axes come into the picture.

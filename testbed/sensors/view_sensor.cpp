@@ -237,9 +237,11 @@ Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::str
                                          const render::DrawList& draws, const ViewsRequest& request,
                                          ViewsWork& work) {
   const scene::PictureDetail& detail = request.detail;
+  const bool exposes = request.camera && request.camera->terms.shutter;
   NERITIC_TRY(shared::Lighting lighting,
               render::make_lighting(frame.scene, frame.state, views.origin_m(), request.exposure,
-                                    frame.gpu_scene.has_emission()));
+                                    frame.gpu_scene.has_emission(),
+                                    exposes ? request.camera->terms.shutter->exposure_s : 0.0));
   if (!request.thrift.forward_scatter) lighting.terms &= ~shared::kLightForwardScatter;
   NERITIC_TRY(const render::LightImages light,
               declare_light(frame, prefix, g, views, draws, detail, work, lighting));

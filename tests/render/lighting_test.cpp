@@ -57,5 +57,33 @@ TEST(Lighting, LampsAreCountedAndOneTooManyIsBadInput) {
   EXPECT_EQ(light.error().code, ErrorCode::kBadInput);
 }
 
+TEST(Lighting, AStrobeGivesTheShareOfTheExposureInWhichItBurns) {
+  scene::Scene scene;
+  scene.lamps.resize(1);
+  scene.lamps[0].strobe_period_s = 0.1;
+  scene.lamps[0].strobe_flash_s = 0.005;
+  const auto share = [&](double time_s, double exposed_s) {
+    FrameState state;
+    state.time_s = time_s;
+    state.world_from_lamp.resize(1);
+    const auto light = make_lighting(scene, state, Vec3(0.0), {}, false, exposed_s);
+    return double(light->lamps[0].intensity_cd.x) / scene.lamps[0].intensity_cd;
+  };
+  for (const double periods : {0.0, 1.0, 1000.0}) {
+    const double t = 0.1 * periods;
+    EXPECT_NEAR(share(t + 0.002, 0.0), 1.0, 1e-6);
+    EXPECT_NEAR(share(t + 0.008, 0.0), 0.0, 1e-6);
+    EXPECT_NEAR(share(t + 0.008, 0.020), 0.25, 1e-6);  // the flash lies within the exposure
+    EXPECT_NEAR(share(t + 0.0025, 0.004), 1.0, 1e-6);  // and the exposure within the flash
+    EXPECT_NEAR(share(t + 0.005, 0.002), 0.5, 1e-6);   // until its end
+    EXPECT_NEAR(share(t, 0.010), 0.5, 1e-6);           // from its beginning
+    EXPECT_NEAR(share(t + 0.05, 0.5), 0.05, 1e-6);     // five periods
+  }
+  EXPECT_NEAR(share(0.05, 10.0), 0.05, 1e-6);
+  EXPECT_NEAR(share(1e8, 10.0), 0.05, 1e-3);
+  scene.lamps[0].strobe_flash_s = 0.2;  // longer than its period
+  EXPECT_NEAR(share(0.03, 0.02), 1.0, 1e-6);
+}
+
 }  // namespace
 }  // namespace neritic::render

@@ -203,8 +203,19 @@ TEST_F(RenderData, ANameThatIsNoneOrThatNothingGivesIsRefusedWithTheNames) {
             "--only: found color; accepted: that with a camera");
   EXPECT_EQ(said({"--only", "sonar", "--sensor", "eyes"}),
             "--only: found sonar; accepted: that with a sonar");
+  EXPECT_EQ(said({"--only", "color,raw"}),
+            "--only: found raw; accepted: that with a camera of sensor = { bayer = \"rggb\" }");
+  EXPECT_EQ(said({"--only", "linear"}),
+            "--only: found linear; accepted: that with a camera of linear = true");
   EXPECT_NE(said({"--only", "depth", "--track-only"}).find("sonar, trajectory"), std::string::npos);
   EXPECT_NE(said({"--only", "trajectory", "--sheet"}).find("--sheet"), std::string::npos);
+  ASSERT_TRUE(write_text(folder_ / "scene.toml",
+                         std::string(kScene) + "[[cameras]]\nname = \"bent\"\nwidth = 16\n"
+                                               "height = 16\nlens = { model = \"fisheye\" }\n")
+                  .ok());
+  EXPECT_EQ(said({"--only", "kitti", "--sensor", "eyes", "--sensor", "bent"}),
+            "--only: found kitti of 'bent', which has a lens or a port; accepted: cameras without "
+            "(--sensor), since KITTI's P2 has no place for one");
   const auto help = tools::parse_command_line({"render", "--help"});
   EXPECT_NE(help->help.find("instances, motion, sonar, coco, trajectory"), std::string::npos);
   EXPECT_FALSE(fs::exists(folder_ / "out"));

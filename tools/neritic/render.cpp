@@ -97,6 +97,28 @@ Result<Datasets> datasets_of(const RenderFlags& flags, const LoopSensors& sensor
   return datasets;
 }
 
+// Data that some cameras cannot give.
+Status check_camera_data(const scene::Scene& scene, const LoopSensors& sensors,
+                         const Datasets& datasets) {
+  const auto some = [&](auto has) {
+    return std::ranges::any_of(sensors.cameras,
+                               [&](std::size_t i) { return has(scene.cameras[i].terms); });
+  };
+  if (datasets.has(Dataset::kLinear) && !some([](const auto& terms) { return terms.linear; }))
+    return refusal("--only", "linear", "that with a camera of linear = true");
+  if (datasets.has(Dataset::kRaw) && !some([](const scene::CameraTerms& terms) {
+        return terms.sensor && terms.sensor->bayer != scene::Bayer::kNone;
+      }))
+    return refusal("--only", "raw", "that with a camera of sensor = { bayer = \"rggb\" }");
+  if (!datasets.has(Dataset::kKitti)) return {};
+  for (const std::size_t i : sensors.cameras)
+    if (scene.cameras[i].terms.lens)
+      return refusal(
+          "--only", fmt::format("kitti of '{}', which has a lens or a port", scene.cameras[i].name),
+          "cameras without (--sensor), since KITTI's P2 has no place for one");
+  return {};
+}
+
 // Drops the sensors that give nothing of what is written.
 void drop_unused(const scene::Scene& scene, const Datasets& datasets, LoopSensors& sensors) {
   if (!datasets.of_sonars()) sensors.sonars.clear();
@@ -140,6 +162,7 @@ Result<ChosenRender> choose(const RenderFlags& flags, const scene::Scene& scene)
   if (sensors.cameras.empty() && sensors.sonars.empty())
     return refusal(flags.scene, "no camera and no sonar", "one or more");
   NERITIC_TRY(const Datasets datasets, datasets_of(flags, sensors));
+  if (!flags.only.empty()) NERITIC_TRY_STATUS(check_camera_data(scene, sensors, datasets));
   const double rate_hz = frame_rate_hz(scene, sensors);
   drop_unused(scene, datasets, sensors);
   const bool seen = !sensors.cameras.empty() &&

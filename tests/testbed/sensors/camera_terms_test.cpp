@@ -239,6 +239,43 @@ TEST_F(CameraTermsTest, ALensPutsThingsWhereItsFormulaSays) {
   }
 }
 
+// Of few vertices: half of one thing hidden, nearly all of another, and next to nothing.
+TEST_F(CameraTermsTest, OcclusionIsTheHiddenShareOfWhatAThingCovers) {
+  scene::Scene scene = scene_with({}, 256);
+  scene.models.push_back(std::make_shared<scene::Model>(scene::make_box({1.0, 1.0, 0.1})));
+  // At twice the distance a thing of twice the size is as large.
+  for (const double shown : {0.5, 0.05, 0.95}) {
+    scene::Object back = box_at({0, 0, -6.05}, 4), front = box_at({shown, 0, -3.05}, 5);
+    back.scale = Vec3(2.0, 2.0, 1.0);
+    scene.objects = {back, front};
+    scene.class_names = {{4, "diver"}, {5, "rov"}};
+    FrameRequest request;
+    request.capture.boxes = true;
+    NERITIC_ASSERT_OK(const ViewImages eye, picture(scene, request));
+    ASSERT_EQ(eye.boxes.size(), 2u);
+    EXPECT_NEAR(eye.boxes[0].occluded, 1.0 - shown, 0.04) << shown;
+    EXPECT_EQ(eye.boxes[1].occluded, 0.0);
+  }
+}
+
+TEST_F(CameraTermsTest, TheWholeBoxOfWhatPassesTheCameraGoesOnBeyondThePicture) {
+  scene::Scene scene = scene_with({}, 128);
+  scene.models.push_back(std::make_shared<scene::Model>(scene::make_box({0.2, 0.4, 20.0})));
+  scene.objects = {box_at({0.6, -0.3, 0.0}, 4)};
+  scene.class_names = {{4, "structure"}};
+  FrameRequest request;
+  request.capture.boxes = true;
+  NERITIC_ASSERT_OK(const ViewImages eye, picture(scene, request));
+  ASSERT_EQ(eye.boxes.size(), 1u);
+  const InstanceBox& box = eye.boxes[0];
+  EXPECT_LE(box.whole.left, box.seen.left + 1.0);
+  EXPECT_LE(box.whole.top, box.seen.top + 1.0);
+  EXPECT_GT(box.whole.right, eye.width);
+  EXPECT_GT(box.whole.bottom, eye.height);
+  EXPECT_GT(box.truncated, 0.5);
+  EXPECT_EQ(box.occluded, 0.0);
+}
+
 TEST_F(CameraTermsTest, BoxesHaveTheSizesPlacesAndOcclusionOfThings) {
   scene::Scene scene = scene_with({}, 128);
   scene.models.push_back(std::make_shared<scene::Model>(scene::make_box({1.0, 0.6, 2.0})));
