@@ -265,12 +265,14 @@ class BodyMaker {
 
   void add_tank(const Tank& tank) {
     const std::size_t i = body_.tank_count++;
-    // The back of the trunk, or beside the waist.
+    // The back of the trunk, or beside the waist; one alone before the ribs, where it tilts its
+    // diver least.
     const std::size_t on_back = tanks_on_back(in_.gear);
     Vec3 at = Vec3(-0.05, 0.0, -0.148 - tank.radius_m);
     if (i >= on_back) {
       const std::size_t beside = i - on_back;
       at = {-0.15, beside == 1 ? 0.24 : -0.24 - 0.1 * (beside == 2), 0.0};
+      if (in_.gear.tanks.size() == on_back + 1) at = {-0.15, -0.15, 0.13};
     } else if (on_back == 2) {
       at.y = (i == 0 ? 1.0 : -1.0) * (tank.radius_m + 0.005);
     }

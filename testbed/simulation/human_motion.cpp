@@ -5,6 +5,7 @@
 
 #include "diver/frames.hpp"
 #include "diver/reach.hpp"
+#include "diver/swimmer_constants.hpp"
 #include "engine/sim/motion.hpp"
 #include "testbed/samples/riding.hpp"
 #include "testbed/simulation/human_world.hpp"
@@ -36,8 +37,10 @@ void follow_plan(const PhysicsHuman& human, HumanPhysics& state) {
   state.leg_from_ned_m = to;
 }
 
-// The least speed through the water at which a swimmer steers, and the most that a plan may ask.
-constexpr double kSteerage_m_s = 0.1, kMostSwim_m_s = 1.2;
+// The least speed through the water at which a swimmer steers, also on a way well up or down, where
+// fins make the rate and hold the pitch (at 0.1 m/s one rises at 30 m a minute); and the most that
+// a plan may ask.
+constexpr double kSteerage_m_s = 0.1, kClimbing_m_s = 0.4, kMostSwim_m_s = 1.2;
 
 // Coulomb's, of a diver on a vehicle: that of a scene's things.
 constexpr double kHumanFriction = sim::Surface{}.friction;
@@ -66,10 +69,11 @@ diver::SwimGoal swim_goal(const PhysicsHuman& human, const HumanPhysics& state) 
   if (!swims_on(human, state)) return {state.leg_from_ned_m, 0.0};
   const Vec3& to = human.waypoints_ned_m[waypoint_index(human, state)];
   if (human.speed_over == scene::SpeedOver::kWater) return {to, human.speed_m_s};
-  const double speed_m_s = through_water_m_s(human.speed_m_s, to - state.human.root.position_ned_m,
-                                             state.human.held.current_ned_m_s);
+  const Vec3 way = to - state.human.root.position_ned_m, current = state.human.held.current_ned_m_s;
+  const double speed_m_s = through_water_m_s(human.speed_m_s, way, current);
   // One whom the current carries along still steers.
-  return {to, std::clamp(speed_m_s, kSteerage_m_s, kMostSwim_m_s)};
+  const bool climbs = current != Vec3(0.0) && std::abs(way.z) > diver::swimming::kWellOff_m;
+  return {to, std::clamp(speed_m_s, climbs ? kClimbing_m_s : kSteerage_m_s, kMostSwim_m_s)};
 }
 
 namespace {

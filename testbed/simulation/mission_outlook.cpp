@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "diver/swimmer_constants.hpp"
 #include "rov/frames.hpp"
 
 namespace neritic::testbed {
@@ -207,6 +208,31 @@ double made_good_m_s(double through_water_m_s, const Vec3& way_ned, const Vec3& 
   return std::max(0.0, with + std::sqrt((through_water_m_s - aside) * (through_water_m_s + aside)));
 }
 
+// The way of a swim plan that is the steepest beyond what the rates of ascent and descent allow.
+void add_steep_way(const PhysicsHuman& human, std::vector<std::string>& lines) {
+  constexpr double kSteep = 1.25;
+  double most = kSteep;
+  std::string line;
+  Vec3 from = human.start.human.root.position_ned_m;
+  for (std::size_t i = 0; i < human.waypoints_ned_m.size(); ++i) {
+    const Vec3& to = human.waypoints_ned_m[i];
+    const double level_m = std::hypot(to.x - from.x, to.y - from.y), down_m = to.z - from.z;
+    const double rate_m_s =
+        down_m > 0.0 ? diver::swimming::kMostSink_m_s : diver::swimming::kMostRise_m_s;
+    const double level_s = level_m / std::max(human.speed_m_s, kLeastSpeed_m_s);
+    const double change_s = std::abs(down_m) / rate_m_s;
+    from = to;
+    if (std::abs(down_m) < diver::swimming::kWellOff_m || change_s <= most * level_s) continue;
+    most = change_s / std::max(level_s, 1e-9);
+    line = fmt::format(
+        "{}: waypoint {} lies {:.3g} m {} and {:.3g} m on: at {:.2g} m a minute that takes {:.0f} "
+        "s, so that the diver circles there",
+        human.name, i + 1, std::abs(down_m), down_m > 0.0 ? "deeper" : "higher", level_m,
+        60.0 * rate_m_s, change_s);
+  }
+  if (!line.empty()) lines.push_back(std::move(line));
+}
+
 // The way of a swim plan on which the diver makes no way, or would have to swim too fast.
 void add_swim(const PhysicsWorld& world, const PhysicsHuman& human,
               std::vector<std::string>& lines) {
@@ -236,6 +262,7 @@ void add_swim(const PhysicsWorld& world, const PhysicsHuman& human,
     from = to;
   }
   if (!line.empty()) lines.push_back(std::move(line));
+  add_steep_way(human, lines);
 }
 
 // A way with its stops, and the number of waypoints that were reached.

@@ -19,9 +19,9 @@ from rotations import quaternion
 CLASSES = ["nothing", "diver", "rov", "mine", "tyre"]
 LABELS = {"diver": 4, "rov": 5, "mine": 12, "tyre": 11}
 SIDE, LEAST_BINS, LEAST_LOUDER, LESSON_BINS, WINDOW_M, LOOKS = 64, 16, 20.0, 24, 2.8, 3
-# To learn from, scene by scene: crops of a class, how the scene is opened, and how many times its crops count.
-LESSONS = [(12, {}, 1)] * 25 + [(12, {"wide": True}, 8)] * 2
-SCENES, STEPS = 54, 3000  # to learn from; of the training
+# To learn from, scene by scene: crops of a class, how the scene is opened.
+LESSONS = [(12, {}), (12, {"wide": True})]
+SCENES, STEPS = 140, 6000  # to learn from; of the training
 WIDE_BOTTOM_DB, WIDE_BEAM_DEG = (-35.0, -18.0), (0.5, 1.6)
 SPLITS = {"train": {"bottoms": ["sand", "gravel", "mud"], "khz": [550, 750, 1200], "beam": [0.8, 1.0, 1.4]},
           "choose": {"khz": [650]},

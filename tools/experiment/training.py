@@ -49,17 +49,16 @@ def _scene(name, program, split, seed, each, opened):
 
 
 def lessons_of(maker, split, scenes):
-    """(crops of a class, words to the Maker, how many times its crops count) of each scene: to learn from, as many scenes of
-    each of the maker's LESSONS, which may leave out the times."""
+    """(crops of a class, words to the Maker) of each scene: to learn from, as many scenes of each of the maker's LESSONS."""
     kinds = getattr(maker, "LESSONS", [(EACH, {})]) if split == "train" else [(EACH_CHOOSE, {})]
-    return [(*kinds[i * len(kinds) // scenes], 1)[:3] for i in range(scenes)]
+    return [kinds[i * len(kinds) // scenes] for i in range(scenes)]
 
 
 def gather(maker, program, split, scenes, seed, workers, told):
     """(pictures, classes) of all scenes, in order. They are not kept: minutes make them again."""
     with concurrent.futures.ProcessPoolExecutor(max(1, workers), initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)) as pool:
         lessons = lessons_of(maker, split, scenes)
-        waiting = [pool.submit(_scene, maker.__name__, program, split, seed + i, *of[:2]) for i, of in enumerate(lessons)]
+        waiting = [pool.submit(_scene, maker.__name__, program, split, seed + i, *of) for i, of in enumerate(lessons)]
         out = []
         try:
             for i, one in enumerate(waiting):
@@ -71,7 +70,7 @@ def gather(maker, program, split, scenes, seed, workers, told):
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
-    return tuple(np.concatenate([made[i] for made, of in zip(out, lessons) for _ in range(of[2])]) for i in (0, 1))
+    return tuple(np.concatenate([made[i] for made in out]) for i in (0, 1))
 
 
 def network(torch, channels, classes):

@@ -236,6 +236,46 @@ TEST(MissionSpeed, TheOutlookNamesWhatADiverCannotSwim) {
             "diver: 0.4 m/s through the water makes no way to waypoint 2 in a current of 0.45 m/s");
 }
 
+TEST(MissionSpeed, TheOutlookNamesAWayThatIsTooSteepToSwim) {
+  const auto lines = [](const std::string& points) {
+    return told(kStillWater +
+                diver_text("position_m = [0, -3, 0]\npitch_deg = -90\nswim = { speed_m_s = 0.4, "
+                           "waypoints_m = [" +
+                           points + "] }\n"));
+  };
+  EXPECT_EQ(lines("[0, -8, -20], [0, -4, 0]"), "");
+  EXPECT_EQ(lines("[0, -25, -20], [10, -25, -20]"),
+            "diver: waypoint 1 lies 22 m deeper and 20 m on: at 9 m a minute that takes 147 s, so "
+            "that the diver circles there");
+  EXPECT_EQ(lines("[0, -6, -20], [0, -3, -20]"),
+            "diver: waypoint 2 lies 3 m higher and 0 m on: at 7.2 m a minute that takes 25 s, so "
+            "that the diver circles there");
+}
+
+// With a tank at the side, whose gas weighs 1.5 kg; the current carries along, away, or across.
+TEST(MissionSpeed, ADiverWithAStageTankMeetsSteepPlacesWithoutAFastAscent) {
+  const test::ScratchFolder scratch;
+  ASSERT_TRUE(write_text(scratch / "diver.toml",
+                         "name = \"deep\"\n[[tanks]]\nvolume_l = 15\npressure_bar = 230\noxygen = "
+                         "0.32\n[[tanks]]\nvolume_l = 7\noxygen = 0.8\n")
+                  .ok());
+  for (const Vec3& current : {Vec3(0.0), Vec3(0, 0, 0.25)}) {
+    TestDive dive = dive_of(
+        current_text(current) +
+        diver_text("position_m = [0, -3, 0]\npitch_deg = -90\nswim = { speed_m_s = 0.4, "
+                   "speed_over = \"ground\", waypoints_m = [[0, -25, -20], [10, -25, -20]] }\n",
+                   (scratch / "diver.toml").string()));
+    double fastest_m_s = 0.0;
+    for (int s = 0; s < 260; ++s) {
+      dive.run(1.0);
+      const auto& root = dive.state().humans()[0].human.root;
+      fastest_m_s = std::max(fastest_m_s, -(root.attitude * root.velocity.linear()).z);
+    }
+    EXPECT_EQ(dive.state().humans()[0].arrived, 2u) << current.z;
+    EXPECT_LT(60.0 * fastest_m_s, 15.0) << current.z;  // 25 where the tank hung beside the waist
+  }
+}
+
 // Up to 0.7 m/s the thrusters master the water from the side; the controller's own integral stopped
 // at 13.5 N, that of some 0.2 m/s, and every such mission stalled beside its first waypoint.
 TEST(MissionSpeed, WaypointsAreReachedInAnyCurrentThatTheThrustersMaster) {
