@@ -77,7 +77,8 @@ std::optional<scene::ModelPose> MotionHistory::model_pose(std::size_t object,
                                                           const scene::Model& model,
                                                           double time_s) const {
   const int place = index_in(joints_, object);
-  if (place < 0 || count_ == 0) return std::nullopt;
+  // A scene that shows another's motion may have nobody there.
+  if (place < 0 || count_ == 0 || model.nodes.empty()) return std::nullopt;
   const auto index = static_cast<std::size_t>(place);
   const std::size_t age = age_before(time_s);
   if (at_age(age).joints[index].rotations.empty()) return std::nullopt;

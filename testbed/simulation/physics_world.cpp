@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "rov/frames.hpp"
 #include "rov/step_choice.hpp"
@@ -71,6 +72,8 @@ bool PhysicsWorld::needed(const scene::Scene& scene) {
 PhysicsWorld::PhysicsWorld(const scene::Scene& scene) : movers_(scene) {}
 
 Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Scene& scene) {
+  if (!scene.physics)
+    return refusal(scene.path, "no physics", "a scene in which something moves by physics");
   std::unique_ptr<PhysicsWorld> world(new PhysicsWorld(scene));
   world->seed_ = scene.seed;
   if (scene.current) {

@@ -57,6 +57,15 @@ mission = { waypoints = [ { position_m = [0, -6, -2] }, { position_m = [1, -7, -
     return {WIFEXITED(raw) ? WEXITSTATUS(raw) : -1, read_text(scratch_ / "out").value(),
             read_text(scratch_ / "err").value()};
   }
+  // Any command, with the machine's device.
+  Outcome neritic(const std::string& arguments) {
+    const int raw =
+        std::system(fmt::format("'{}/tools/neritic' {} > '{}' 2> '{}'", NERITIC_BINARY_DIR,
+                                arguments, (scratch_ / "out").string(), (scratch_ / "err").string())
+                        .c_str());
+    return {WIFEXITED(raw) ? WEXITSTATUS(raw) : -1, read_text(scratch_ / "out").value(),
+            read_text(scratch_ / "err").value()};
+  }
   std::string file(const std::string& name) const { return "'" + (scratch_ / name).string() + "'"; }
 
   // Columns by name.

@@ -4,6 +4,7 @@
 
 #include "engine/core/json.hpp"
 #include "testbed/samples/sample_log.hpp"
+#include "tests/support/device_gate.hpp"
 #include "tests/tools/dive_physics.hpp"
 
 namespace neritic {
@@ -143,6 +144,41 @@ TEST_F(DivePhysics, RunsAlikeAndReplaysWhatItRecorded) {
             std::string::npos)
       << other.out;
   EXPECT_NE(other.out.find(" steps dropped, hash "), std::string::npos) << other.out;
+}
+
+// The recorded physics runs, whatever that of the shown scene is: none, or another. Those who are
+// not there are named once, and not drawn.
+TEST_F(DivePhysics, ShowsARecordingInAnotherScene) {
+  if (test::may_skip_without_device()) GTEST_SKIP() << "no Vulkan device";
+  const std::string assets = (test::source_dir() / "assets").string();
+  const std::string diver = "[[objects]]\nname = \"diver\"\nmodel = \"" + assets +
+                            "/models/diver.glb\"\nhuman = \"" + assets +
+                            "/divers/recreational.toml\"\nposition_m = [3, -6, 0]\n" +
+                            "pitch_deg = -90\nswim = { waypoints_m = [[3, -6, -20]] }\n";
+  ASSERT_TRUE(
+      write_text(scratch_ / "two.toml", read_text(scratch_ / "dive.toml").value() + diver).ok());
+  const std::string camera = "[[cameras]]\nname = \"eye\"\nwidth = 64\nheight = 48\n" +
+                             std::string("position_m = [0, -6, 3]\n[sun]\n");
+  const std::string still = read_text(scratch_ / "still.toml").value() + camera;
+  ASSERT_TRUE(write_text(scratch_ / "still.toml", still).ok());
+  ASSERT_TRUE(write_text(scratch_ / "other.toml", "[physics]\n" + still + diver +
+                                                      "[current]\nkind = \"uniform\"\n" +
+                                                      "velocity_m_s = [0.1, 0, 0]\n")
+                  .ok());
+  ASSERT_EQ(dive("--headless --seconds 1 --record " + file("a.mcap"), "two.toml").status, 0);
+  for (const bool physics : {false, true}) {
+    const std::string shown =
+        "--replay " + file("a.mcap") + " --scene " + file(physics ? "other.toml" : "still.toml");
+    const Outcome live = neritic("dive --headless --fast --frames 20 " + shown);
+    EXPECT_EQ(live.status, 0) << live.err;
+    const std::string missing = physics ? "nothing here is named rov, as in the recording"
+                                        : "nothing here is named diver or rov, as in the recording";
+    EXPECT_NE(live.err.find(missing), std::string::npos) << live.err;
+    const Outcome drawn = neritic("render --time 0.5 --frames 1 --sensor eye --out " +
+                                  file(physics ? "o1" : "o0") + " " + shown);
+    EXPECT_EQ(drawn.status, 0) << drawn.err;
+    EXPECT_NE(drawn.err.find(missing), std::string::npos) << drawn.err;
+  }
 }
 
 // An object under motion capture: eastwards at 1 m/s for a second, 60 poses a second; then silence.

@@ -253,7 +253,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
     // A recording is exact where its samples enter before the same step: in lock-step.
     using Pace = LivePhysics::Pace;
     const bool lock_step = flags.headless || !flags.replay.empty();
-    NERITIC_TRY(physics, make_dive_physics(flags, scene, recorded ? &*recorded : nullptr,
+    NERITIC_TRY(physics, make_dive_physics(flags, run_scene, recorded ? &*recorded : nullptr,
                                            lock_step ? Pace::kPicture : Pace::kClock, clock));
   }
   if (physics && recorded) {

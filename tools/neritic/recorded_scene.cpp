@@ -5,6 +5,7 @@
 #include "engine/core/log.hpp"
 #include "engine/core/refusal.hpp"
 #include "engine/render/water_optics.hpp"
+#include "testbed/simulation/human_world.hpp"
 #include "tools/neritic/load_scene.hpp"
 
 namespace neritic::tools {
@@ -12,8 +13,14 @@ using namespace testbed;
 
 namespace {
 
-bool moves(const scene::Object& object) {
-  return object.dynamics || object.human || !object.inputs.empty();
+// The objects of a scene that its physics moves: participants, things and drawn tethers.
+std::vector<bool> moved_in(const scene::Scene& scene) {
+  std::vector<bool> moved;
+  for (const scene::Object& object : scene.objects)
+    moved.push_back(object.dynamics || object.human || object.thing || !object.inputs.empty());
+  for (const scene::Object& object : scene.objects)
+    if (object.dynamics && object.dynamics->tether) moved[object.dynamics->tether->object] = true;
+  return moved;
 }
 
 std::vector<std::string> node_names(const scene::Scene& scene, const scene::Object& object) {
@@ -24,26 +31,39 @@ std::vector<std::string> node_names(const scene::Scene& scene, const scene::Obje
   return names;
 }
 
+// The nodes of this object's model are moved, not the object alone.
+bool poses_nodes(const scene::Scene& scene, const scene::Object& object) {
+  if (object.human) return true;
+  if (object.dynamics || object.model < 0 || !object.copies.empty()) return false;
+  if (object.inputs.empty()) return !object.thing;  // a tether
+  std::string_view missing;
+  drawn_joints_of(*scene.models[static_cast<std::size_t>(object.model)], missing);
+  return missing.empty();
+}
+
 // The place in `physics` of each object of `shown`, with the participants where those of their
 // names are.
 Result<std::vector<std::size_t>> places_of(const scene::Scene& shown, const scene::Scene& physics,
                                            const std::string& path) {
   std::vector<std::optional<std::size_t>> places(shown.objects.size());
-  std::vector<bool> taken(physics.objects.size());
+  const std::vector<bool> taken = moved_in(physics);
+  std::vector<std::string> missing;
   for (std::size_t i = 0; i < physics.objects.size(); ++i) {
     const scene::Object& mover = physics.objects[i];
-    if (!moves(mover)) continue;
-    taken[i] = true;
+    if (!taken[i]) continue;
     const auto same = std::ranges::find(shown.objects, mover.name, &scene::Object::name);
     if (same == shown.objects.end()) {
-      log_warn("{}: no object is named {}, as one that was recorded", path, mover.name);
+      missing.push_back(mover.name);
       continue;
     }
-    if (mover.human && node_names(shown, *same) != node_names(physics, mover))
+    if (poses_nodes(physics, mover) && node_names(shown, *same) != node_names(physics, mover))
       return refusal(path, fmt::format("{} with another model than was recorded", mover.name),
                      "a model with the same nodes");
     places[static_cast<std::size_t>(same - shown.objects.begin())] = i;
   }
+  if (!missing.empty())
+    log_warn("{}: nothing here is named {}, as in the recording: not shown", path,
+             fmt::join(missing, " or "));
   std::size_t next = 0;
   std::vector<std::size_t> out;
   for (const auto& place : places) {
