@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::array kBits{diver::kInflate, diver::kDeflate, diver::kDump};
 constexpr TimeNs kMostAhead_ns = 100 * kMillisecond_ns;
+// The sender reads its clock and its counters at different times.
+constexpr TimeNs kSenderSlack_ns = 50 * kMillisecond_ns;
 
 }  // namespace
 
@@ -33,17 +35,44 @@ void JacketAdapter::go_on(TimeNs now_ns) {
   went_on_ns_ = now_ns;
 }
 
+// No button is pressed for longer than the time since the packet before, by the sender's clock
+// where that goes on, and by the host's with the delay that a packet may have.
+bool JacketAdapter::plausible(const net::UbcdCounters& now, TimeNs arrived_ns,
+                              const Heard& before) const {
+  TimeNs most_ns = std::max<TimeNs>(arrived_ns - before.at_ns, 0) + kSilence_ns;
+  const std::uint64_t passed_us = now.time_us - before.counters.time_us;
+  if (passed_us > 0 && passed_us < static_cast<std::uint64_t>(most_ns / 1000))
+    most_ns = std::min(most_ns, static_cast<TimeNs>(passed_us) * 1000 + kSenderSlack_ns);
+  for (std::size_t i = 0; i < kBits.size(); ++i) {
+    const auto more_ms =
+        static_cast<std::uint16_t>(now.pressed_ms[i] - before.counters.pressed_ms[i]);
+    if (more_ms * kMillisecond_ns > most_ns) return false;
+  }
+  return true;
+}
+
 void JacketAdapter::take_counters(const net::JacketPacket& packet, TimeNs arrived_ns, Outlet& out) {
   using Verdict = net::CounterTrack::Verdict;
   const Verdict verdict = sequence_.take(packet.counters->sequence, arrived_ns, counts_);
   if (verdict != Verdict::kNew && verdict != Verdict::kRestarted) return;
   const auto sent_ns =
       static_cast<TimeNs>((packet.counters->time_us & (~std::uint64_t{0} >> 12)) * 1000);
+  bool anew = !heard_ || verdict == Verdict::kRestarted || arrived_ns - heard_->at_ns > kSilence_ns;
+  // Counters that leap count only if the next packet goes on from there, and then for nothing.
+  if (!anew && !plausible(*packet.counters, arrived_ns, *heard_)) {
+    anew = leapt_ && plausible(*packet.counters, arrived_ns, *leapt_);
+    if (!anew) {
+      leapt_ = {*packet.counters, arrived_ns};
+      ++counts_.malformed;
+      return;
+    }
+  }
+  leapt_.reset();
+  if (verdict == Verdict::kRestarted) clock_.restart();
   clock_.add(sent_ns, arrived_ns);
   go_on(arrived_ns);
-  const bool anew = !any_ || verdict == Verdict::kRestarted || arrived_ns - heard_ns_ > kSilence_ns;
-  any_ = true;
-  heard_ns_ = arrived_ns;
+  const Heard before = heard_.value_or(Heard{});
+  heard_ = {*packet.counters, arrived_ns};
   std::uint64_t pressed = 0;
   for (std::size_t i = 0; i < kBits.size(); ++i) {
     Button& button = buttons_[i];
@@ -51,8 +80,9 @@ void JacketAdapter::take_counters(const net::JacketPacket& packet, TimeNs arrive
     if (anew)
       button.said_ns = button.given_ns = 0;
     else
-      button.said_ns += static_cast<std::uint16_t>(said_ms - button.said_ms) * kMillisecond_ns;
-    button.said_ms = said_ms;
+      button.said_ns +=
+          static_cast<std::uint16_t>(said_ms - before.counters.pressed_ms[i]) * kMillisecond_ns;
+    button.said_ns = std::min(button.said_ns, button.given_ns + kSilence_ns);
     // Jitter errs both ways; what was given too long is owed less the next time.
     button.given_ns = std::min(button.given_ns, button.said_ns + kMostAhead_ns);
     const TimeNs owed_ns = button.said_ns - button.given_ns;

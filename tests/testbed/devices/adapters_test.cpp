@@ -337,6 +337,48 @@ TEST(JacketAdapter, LossAndJitterChangeNoGas) {
   }
 }
 
+// Counters that leap by more than the time that went by press nothing: neither those of a packet
+// whose bits are wrong, nor those of a jacket that was started again.
+TEST(JacketAdapter, CountersThatLeapPressNothing) {
+  Bench bench("jacket = \"jacket udp\"\n");
+  JacketAdapter jacket;
+  std::uint64_t pressed = 0;
+  TimeNs now = kSecond_ns;
+  std::uint16_t sequence = 0;
+  const auto run = [&](int packets, std::uint16_t inflate_ms, TimeNs device_ns = 0) {
+    TimeNs given_ns = 0;
+    for (int i = 0; i < packets; ++i) {
+      now += 20 * kMillisecond_ns;
+      net::UbcdCounters counters{.sequence = sequence++,
+                                 .time_us = static_cast<std::uint64_t>((now + device_ns) / 1000)};
+      counters.pressed_ms = {inflate_ms, 0, 0};
+      jacket.take(net::encode_jacket({{}, counters}), false, now, bench.out);
+      for (int ms = 0; ms < 20; ++ms) {
+        jacket.tick(now + ms * kMillisecond_ns, bench.out);
+        for (const Sample& sample : bench.samples())
+          pressed = std::get<JacketButtons>(sample.payload).pressed;
+        if (pressed != 0) given_ns += kMillisecond_ns;
+      }
+    }
+    return to_ms(given_ns);
+  };
+  EXPECT_EQ(run(50, 65'500), 0.0);
+  EXPECT_EQ(run(50, 59'964), 0.0);  // 60 s in 20 ms, for good
+  EXPECT_EQ(jacket.counts().malformed, 1u);
+  EXPECT_EQ(run(1, 400), 0.0);  // a packet with a wrong counter
+  EXPECT_EQ(run(50, 59'964), 0.0);
+  EXPECT_EQ(run(50, 60'264), 0.0);  // 300 ms in 20 ms
+  EXPECT_EQ(run(50, 65'530), 0.0);
+  EXPECT_EQ(run(50, 4, -now), 0.0);  // its clock, too, begins again
+  EXPECT_EQ(jacket.counts().malformed, 4u);
+  // A press over a wrap whose packets were lost is made up for.
+  (void)run(2, 65'530);
+  sequence = static_cast<std::uint16_t>(sequence + 10);
+  now += 200 * kMillisecond_ns;
+  EXPECT_NEAR(run(50, 144), 150.0, 10.0);
+  expect_adds_up(jacket.counts());
+}
+
 TEST(MicrophoneAdapter, BreathIsFoundOverALossyLink) {
   Bench bench("mic = \"microphone udp\"\n");
   MicrophoneAdapter microphone(16'000.0);
