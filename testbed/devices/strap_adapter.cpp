@@ -17,6 +17,10 @@ constexpr std::size_t kMostIntervals = 32;
 constexpr double kLongestGap_s = 3600.0, kRatePeriod_s = 1.0;
 // A strap's clock that falls so far back was set anew, and so was one that leaps.
 constexpr double kSetBack_s = 10.0, kLeap_s = 10.0;
+// A slow heart leaves packets without an interval; after so long without one the rate counts.
+constexpr TimeNs kIntervalCounts = 5 * kSecond_ns;
+// The rates of a heart that a strap can find; 0: it is not worn.
+constexpr int kLeastRate_bpm = 20, kMostRate_bpm = 300;
 
 }  // namespace
 
@@ -31,7 +35,8 @@ void StrapAdapter::receive(net::Bytes bytes, bool cut, TimeNs arrived_ns, Outlet
 
 void StrapAdapter::take_rate(net::Bytes bytes, TimeNs arrived_ns, Outlet& out) {
   const auto packet = net::decode_heart_rate(bytes);
-  if (!packet.ok() || packet->intervals.size() > kMostIntervals) {
+  if (!packet.ok() || packet->intervals.size() > kMostIntervals ||
+      (packet->bpm > 0 && (packet->bpm < kLeastRate_bpm || packet->bpm > kMostRate_bpm))) {
     ++counts_.malformed;
     return;
   }
@@ -54,17 +59,28 @@ void StrapAdapter::take_rate(net::Bytes bytes, TimeNs arrived_ns, Outlet& out) {
   // Packets are missing: nobody knows the beats between.
   if (since_s > 2.0 * kRatePeriod_s) {
     counts_.lost += static_cast<std::uint64_t>(std::lround(std::min(since_s, 1e6))) - 1;
-    if (any_interval_ && worn && since_s > counted_s)
+    if (by_intervals_ && worn && since_s > counted_s)
       intervals_.skip(std::min(since_s - counted_s, kLongestGap_s));
   }
-  if (!worn)
+  if (!packet->intervals.empty()) {
+    // Nobody knows the beats while the rate counted.
+    const double unknown_s = 1e-9 * static_cast<double>(arrived_ns - interval_ns_) - counted_s;
+    if (!by_intervals_ && interval_ns_ > 0 && worn && unknown_s > 0.0)
+      intervals_.skip(std::min(unknown_s, kLongestGap_s));
+    interval_ns_ = arrived_ns;
+    by_intervals_ = true;
+  } else if (worn && arrived_ns - interval_ns_ > kIntervalCounts) {
+    by_intervals_ = false;
+  }
+  if (!worn) {
     intervals_.skip(std::clamp(since_s, 1e-3, kLongestGap_s));
-  else
+    if (!by_intervals_ && interval_ns_ > 0) interval_ns_ = arrived_ns;
+  } else {
     for (const std::uint16_t interval : packet->intervals)
       intervals_.push_interval(net::kRrUnit_s * interval);
-  any_interval_ = any_interval_ || !packet->intervals.empty();
+  }
   Heart heart{intervals_.state()};
-  if (!any_interval_) {
+  if (!by_intervals_) {
     heart.state.time_s = 1e-9 * static_cast<double>(arrived_ns - begun_ns_) + kRatePeriod_s;
     heart.state.rate_bpm = worn ? packet->bpm : 0.0;
     heart.state.last_beat_s = worn ? heart.state.time_s : 0.0;

@@ -1,5 +1,7 @@
 // A heart strap as a diver's heart: its ECG (Polar's measurement data) or, without one, the
-// intervals that it counts itself (0x2A37), or the rate alone. The thread of the device.
+// intervals that it counts itself (0x2A37), or the rate alone: that of packets which had no
+// interval for five seconds. A rate that is neither 0 nor 20 to 300 is malformed. The thread of the
+// device.
 #pragma once
 
 #include <optional>
@@ -22,8 +24,9 @@ class StrapAdapter final : public DeviceAdapter {
 
   diver::HeartMonitor intervals_;
   std::optional<diver::HeartMonitor> ecg_;
-  bool any_interval_ = false;
+  bool by_intervals_ = false;                       // they tell the rate, not the field of it
   TimeNs begun_ns_ = 0, rate_ns_ = 0, ecg_ns_ = 0;  // arrivals: first, last of each
+  TimeNs interval_ns_ = 0;                          // up to which intervals or gaps are known
   std::vector<std::byte> last_rate_;
   std::optional<std::uint64_t> last_ecg_ns_;  // by the strap's clock
 };

@@ -228,6 +228,44 @@ TEST(SuitAdapter, AStreamInPiecesGivesTheSameFrames) {
   expect_adds_up(suit.counts());
 }
 
+TEST(StrapAdapter, IntervalsThatEndGiveWayToTheRate) {
+  Bench bench("strap = \"strap udp\"\n");
+  StrapAdapter strap;
+  TimeNs now = kSecond_ns;
+  const auto heart = [&](const char* hex) {
+    now += kSecond_ns;
+    strap.take(bytes_of(std::string(hex)), false, now, bench.out);
+    return std::get<Heart>(bench.samples().back().payload).state;
+  };
+  for (int i = 0; i < 12; ++i) (void)heart("103C0004");
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(heart("0096").rate_bpm, 60.0, 1e-9) << i;
+  const double before_s = heart("0096").time_s;
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(heart("0097").rate_bpm, 151.0) << i;
+  const diver::HeartState after = heart("0096");
+  EXPECT_EQ(after.quality, diver::SignalQuality::kGood);
+  EXPECT_NEAR(after.time_s, before_s + 21.0, 1e-6);
+  // Intervals again: no beat is counted across the gap.
+  diver::HeartState again;
+  for (int i = 0; i < 12; ++i) again = heart("103C0004");
+  EXPECT_NEAR(again.rate_bpm, 60.0, 1e-9);
+  EXPECT_NEAR(again.time_s, after.time_s + 12.0, 1.1);
+  EXPECT_EQ(again.gaps, 1u);
+}
+
+TEST(StrapAdapter, RatesOfNoHeartAreMalformed) {
+  Bench bench("strap = \"strap udp\"\n");
+  StrapAdapter strap;
+  TimeNs now = kSecond_ns;
+  for (const char* hex : {"01FFFF", "012D01", "0013", "0001", "11FFFF0004"})
+    strap.take(bytes_of(std::string(hex)), false, now += kSecond_ns, bench.out);
+  EXPECT_EQ(strap.counts().malformed, 5u);
+  EXPECT_TRUE(bench.samples().empty());
+  for (const char* hex : {"012C01", "0014", "0000"})
+    strap.take(bytes_of(std::string(hex)), false, now += kSecond_ns, bench.out);
+  EXPECT_EQ(bench.samples().size(), 3u);
+  expect_adds_up(strap.counts());
+}
+
 TEST(StrapAdapter, VectorsGiveRatesAndAStrapThatIsOffIsAGapNotASlowHeart) {
   Bench bench("strap = \"strap udp\"\n");
   StrapAdapter strap;
