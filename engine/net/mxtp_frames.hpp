@@ -1,8 +1,10 @@
 // Puts a suit's frames together from their datagrams: a frame counts when all of its parts came, in
-// any order. Parts of frames that are older than the newest whole one are dropped and counted.
-// A segment that was refused keeps its last good value. One thread.
+// any order, with all of the body's segments. Parts of frames that are older than the newest whole
+// one are dropped and counted. A segment that was refused keeps its last good value for half a
+// second. One thread.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "engine/net/counter_track.hpp"
@@ -18,6 +20,7 @@ struct SuitFrame {
   // Left hand, right hand: the carpus, then three of the thumb and four of each finger.
   std::array<std::array<MxtpPose, kMxtpHandSegments>, 2> hands{};
   bool has_hands = false;
+  bool restarted = false;  // the first frame of a device that was started again
 };
 
 class SuitFrames {
@@ -29,6 +32,10 @@ class SuitFrames {
 
   // Frames that may be incomplete at once, and datagrams of one.
   static constexpr std::size_t kPending = 16, kMostParts = 16;
+  // A segment's value is not used for longer.
+  static constexpr TimeNs kKept_ns = 500'000'000;
+  // Frames in a row that lacked parts or segments.
+  std::uint64_t incomplete() const { return incomplete_; }
 
  private:
   struct Pending {
@@ -38,16 +45,22 @@ class SuitFrames {
     int last = -1;            // the number of the last one; -1: it did not come yet
     TimeNs at_ns = 0;
     std::vector<MxtpPose> poses;
+    std::uint32_t refused = 0;  // items that came and are not among the poses
     bool hands = false;
     bool used = false;
   };
   Pending* pending_of(const MxtpHeader& header, TimeNs arrived_ns, LinkCounts& counts);
   const SuitFrame* publish(Pending& pending, std::uint8_t props, LinkCounts& counts);
+  static bool has_body(const Pending& pending);
 
   std::uint8_t character_;
   CounterTrack samples_{32};
   std::array<Pending, kPending> pending_;
-  std::array<bool, kMxtpBodySegments> known_{};
+  // Arrivals of each segment's last good value.
+  std::array<std::optional<TimeNs>, kMxtpBodySegments> body_ns_;
+  std::array<std::optional<TimeNs>, 2 * kMxtpHandSegments> hands_ns_;
+  std::uint64_t incomplete_ = 0;
+  bool restarted_ = false;
   SuitFrame frame_;
   std::uint32_t time_ms_ = 0;
   bool timed_ = false;

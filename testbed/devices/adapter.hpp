@@ -4,6 +4,7 @@
 #pragma once
 
 #include <limits>
+#include <string>
 
 #include "engine/net/clock_map.hpp"
 #include "engine/net/counter_track.hpp"
@@ -32,6 +33,8 @@ class DeviceAdapter {
   const net::LinkCounts& counts() const { return counts_; }
   // How old the newest sample may be when it is sent: the inbox refuses older ones.
   virtual TimeNs max_age_ns() const { return SampleInbox::kMaxAge_ns; }
+  // Why nothing of what comes is used, in words; empty: it is used.
+  virtual std::string trouble() const { return {}; }
   net::ClockEstimate clock() const { return clock_.estimate(); }
   const net::ClockMap& clock_map() const { return clock_; }
   // Only where the protocol asks the device for its time (LSL).

@@ -126,6 +126,7 @@ void DeviceSource::tell(TimeNs now_ns) {
   health_.heard_ns = heard_ns_;
   health_.rate_hz = rate_hz_;
   health_.trouble = feed_->trouble();
+  if (health_.trouble.empty()) health_.trouble = adapter_->trouble();
 }
 
 DeviceHealth DeviceSource::health() const {
@@ -172,6 +173,7 @@ std::string stream_words(const DeviceHealth& health, TimeNs now_ns) {
     return fmt::format("{}: silent for {:.0f} s", health.name,
                        1e-9 * static_cast<double>(now_ns - health.heard_ns));
   std::string words = link_words(health);
+  if (!health.trouble.empty()) return words + ", " + health.trouble;
   if (health.clock.known)
     words += fmt::format(", clock {:+.3f} s, jitter {:.0f} ms", health.clock.offset_s,
                          health.clock.spread_ms);

@@ -23,7 +23,7 @@ struct DeviceHealth {
   std::uint64_t samples = 0, accepted = 0;  // sent to the inbox; those that it took
   TimeNs heard_ns = 0;                      // arrival of the newest datagram; 0: none came
   double rate_hz = 0.0;                     // datagrams of late
-  std::string trouble;                      // of the connection
+  std::string trouble;                      // of the connection, or why nothing is used
 };
 // "suit (mxtp, udp://127.0.0.1:9763): 480 packets a second, 2.0 % lost, clock -12.345678 s, drift
 // 12 ppm, jitter 10 ms (longest 20)". now_ns: on the clock of heard_ns.

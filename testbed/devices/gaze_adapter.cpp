@@ -12,8 +12,10 @@ void GazeAdapter::receive(net::Bytes bytes, bool cut, TimeNs arrived_ns, Outlet&
     using Verdict = net::CounterTrack::Verdict;
     const Verdict verdict = sequence_.take(packet->sequence, arrived_ns, counts_);
     if (verdict != Verdict::kNew && verdict != Verdict::kRestarted) return;
-    if (verdict == Verdict::kRestarted)
+    if (verdict == Verdict::kRestarted) {
+      clock_.restart();
       gaze_ = diver::GazeMonitor(diver::headset_gaze(diver::GazeMethod::kVelocity));
+    }
     const auto sent_ns = static_cast<TimeNs>((packet->time_us & (~std::uint64_t{0} >> 12)) * 1000);
     clock_.add(sent_ns, arrived_ns);
     diver::GazeEvents events;  // the state counts them

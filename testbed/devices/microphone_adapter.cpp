@@ -39,6 +39,7 @@ void MicrophoneAdapter::receive(net::Bytes bytes, bool cut, TimeNs arrived_ns, O
         static_cast<std::uint16_t>(static_cast<std::uint16_t>(newest_wire_) - packet->sequence);
     if (verdict != Verdict::kOlder) newest_wire_ = packet->sequence;
     const std::uint64_t number = verdict == Verdict::kOlder ? newest - back : newest;
+    if (verdict == Verdict::kRestarted) clock_.restart();
     if (!any_ || verdict == Verdict::kRestarted) begin_anew(number);
     if (verdict == Verdict::kOlder && (back > newest || number < next_)) return;
     waiting_.insert_or_assign(number, Waiting{std::move(*packet), arrived_ns});

@@ -5,6 +5,7 @@
 namespace neritic::testbed {
 namespace {
 
+constexpr std::uint64_t kTroubleAfter = 50;  // datagrams or frames in a row
 constexpr std::array kMagic{std::byte{'M'}, std::byte{'X'}, std::byte{'T'}, std::byte{'P'}};
 
 }  // namespace
@@ -44,15 +45,27 @@ void SuitAdapter::take_datagram(net::Bytes bytes, TimeNs arrived_ns, Outlet& out
     ++(datagram.error().code == ErrorCode::kUnsupported ? counts_.unused : counts_.malformed);
     return;
   }
+  type_ = datagram->header.type;
+  others_ = type_ == 2 ? 0 : others_ + 1;
   const net::SuitFrame* frame = frames_.take(*datagram, arrived_ns, counts_);
   if (!frame) return;
   const TimeNs sent_ns = static_cast<TimeNs>(frame->time_ms) * kMillisecond_ns;
+  if (frame->restarted) clock_.restart();
   clock_.add(sent_ns, frame->first_ns);
   const TimeNs captured_ns = clock_.to_host(sent_ns);
   BodyJoints body;
   body.joints = joints_of(*frame);
   out.send(body, captured_ns, arrived_ns);
   out.send(hands_of(*frame, body.joints), captured_ns, arrived_ns);
+}
+
+std::string SuitAdapter::trouble() const {
+  if (others_ >= kTroubleAfter)
+    return fmt::format("it sends type {:02}; used: 02, position and orientation (quaternion)",
+                       type_);
+  if (frames_.incomplete() >= kTroubleAfter)
+    return fmt::format("no frame has all {} segments of the body", net::kMxtpBodySegments);
+  return {};
 }
 
 }  // namespace neritic::testbed

@@ -225,5 +225,49 @@ TEST(SuitFrames, ADeviceThatStartsAgainIsHeardAfterASilence) {
   EXPECT_EQ(counts.restarts, 1u);
 }
 
+TEST(SuitFrames, AFrameWithoutAllSegmentsOfTheBodyIsNone) {
+  SuitFrames frames;
+  LinkCounts counts;
+  ASSERT_NE(frames.take(frame_of(1, 4, 1)[0], 0, counts), nullptr);
+  for (std::uint32_t sample = 2; sample < 12; ++sample) {
+    auto one = frame_of(sample, 4 * sample, 1);
+    std::get<std::vector<MxtpPose>>(one[0].items).resize(1);
+    EXPECT_EQ(frames.take(one[0], TimeNs{4'000'000} * sample, counts), nullptr);
+  }
+  EXPECT_EQ(counts.refused, 10u);
+  EXPECT_EQ(frames.incomplete(), 10u);
+  // Nor is the frame of a smaller body.
+  auto few = frame_of(12, 48, 1);
+  few[0].header.body_segments = 5;
+  std::get<std::vector<MxtpPose>>(few[0].items).resize(5);
+  EXPECT_EQ(frames.take(few[0], 48'000'000, counts), nullptr);
+  const SuitFrame* frame = frames.take(frame_of(13, 52, 1)[0], 52'000'000, counts);
+  ASSERT_NE(frame, nullptr);
+  EXPECT_FALSE(frame->restarted);
+  EXPECT_EQ(frames.incomplete(), 0u);
+}
+
+// A segment that is never good again, and gloves that are no longer worn, do not stay as they were.
+TEST(SuitFrames, AValueIsKeptForHalfASecond) {
+  SuitFrames frames;
+  LinkCounts counts;
+  ASSERT_NE(frames.take(frame_of(1, 4, 1)[0], 0, counts), nullptr);
+  for (std::uint32_t sample = 2; sample < 300; ++sample) {
+    auto bad = frame_of(sample, 4 * sample, 1);
+    auto& poses = std::get<std::vector<MxtpPose>>(bad[0].items);
+    poses.resize(23);
+    if (sample < 200) {
+      poses.erase(poses.begin() + 5);
+      bad[0].refused_items = 1;
+    }
+    const TimeNs now = TimeNs{4'000'000} * sample;
+    const SuitFrame* frame = frames.take(bad[0], now, counts);
+    EXPECT_EQ(frame != nullptr, now <= SuitFrames::kKept_ns || sample >= 200) << sample;
+    if (frame) {
+      EXPECT_EQ(frame->has_hands, now <= SuitFrames::kKept_ns) << sample;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace neritic::net

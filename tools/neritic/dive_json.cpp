@@ -106,6 +106,7 @@ nlohmann::json device_json(const DeviceHealth& health) {
                       {"restarts", link.restarts},
                       {"refused_parts", link.refused},
                       {"queue_overflowed", link.overflowed},
+                      {"trouble", health.trouble},
                       {"clock", nullptr}};
   if (clock.known)
     json["clock"] = {{"offset_s", clock.offset_s},

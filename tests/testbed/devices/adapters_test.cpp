@@ -228,6 +228,48 @@ TEST(SuitAdapter, AStreamInPiecesGivesTheSameFrames) {
   expect_adds_up(suit.counts());
 }
 
+// The samples' number and time begin again together, without a pause.
+TEST(SuitAdapter, ARestartedSuitIsOnTimeAgain) {
+  Bench bench("suit = \"mxtp udp\"\n");
+  SuitAdapter suit(0, false);
+  const net::SuitFrame still = suit_frame({}, {}, Quat(1, 0, 0, 0));
+  TimeNs last_age_ns = 0;
+  for (std::uint32_t i = 0; i < 400; ++i) {
+    const std::uint32_t number = i < 200 ? 5000 + i : i - 200;
+    const TimeNs now = kSecond_ns + i * 10 * kMillisecond_ns;
+    suit.take(net::encode_mxtp({.sample = number,
+                                .items = 23,
+                                .time_ms = i < 200 ? 50'000 + 10 * i : 10 * (i - 200),
+                                .body_segments = 23},
+                               still.body),
+              false, now, bench.out);
+    for (const Sample& sample : bench.samples()) last_age_ns = now - sample.header.captured_ns;
+  }
+  EXPECT_EQ(suit.counts().restarts, 1u);
+  EXPECT_EQ(last_age_ns, 0);
+  EXPECT_NEAR(suit.clock().offset_s, 3.0, 1e-6);
+  EXPECT_EQ(bench.out.sent(), bench.out.accepted());
+}
+
+TEST(SuitAdapter, OneThatGivesNoWholeFrameSaysSo) {
+  Bench bench("suit = \"mxtp udp\"\n");
+  SuitAdapter suit(0, false);
+  const net::SuitFrame still = suit_frame({}, {}, Quat(1, 0, 0, 0));
+  for (std::uint32_t i = 0; i < 60; ++i)
+    suit.take(net::encode_mxtp({.sample = i, .items = 5, .time_ms = 10 * i, .body_segments = 5},
+                               std::span(still.body).first(5)),
+              false, kSecond_ns + i * 10 * kMillisecond_ns, bench.out);
+  EXPECT_EQ(suit.trouble(), "no frame has all 23 segments of the body");
+  suit.take(net::encode_mxtp({.sample = 60, .items = 23, .time_ms = 600, .body_segments = 23},
+                             still.body),
+            false, 2 * kSecond_ns, bench.out);
+  EXPECT_EQ(suit.trouble(), "");
+  const auto vectors = net::wire_vectors();
+  for (int i = 0; i < 60; ++i)
+    suit.take(bytes_of(vectors["xsens_mvn"]["vectors"][2]), false, 3 * kSecond_ns, bench.out);
+  EXPECT_EQ(suit.trouble(), "it sends type 20; used: 02, position and orientation (quaternion)");
+}
+
 TEST(StrapAdapter, IntervalsThatEndGiveWayToTheRate) {
   Bench bench("strap = \"strap udp\"\n");
   StrapAdapter strap;
