@@ -17,13 +17,15 @@ class Draining final : public McapOut {
   std::uint16_t add_channel(McapChannel channel) override {
     return writer_.add_channel(std::move(channel));
   }
+  // No file is begun before there is a message for it.
   void message(const McapMessage& message) override {
     writer_.message(message);
+    begun_ = true;
     drain();
   }
   void attachment(const McapAttachment& attachment) override {
     writer_.attachment(attachment);
-    drain();
+    if (begun_) drain();
   }
   void metadata(const McapMetadata& metadata) override { writer_.metadata(metadata); }
   void drain() {
@@ -35,6 +37,7 @@ class Draining final : public McapOut {
   McapWriter& writer_;
   GrowingFile& file_;
   Status status_;
+  bool begun_ = false;
 };
 
 }  // namespace
@@ -75,6 +78,9 @@ Result<McapReport> repair_mcap(const std::filesystem::path& from, const std::fil
   Draining out(writer, file);
   McapCopy copy(out);
   NERITIC_TRY(const McapReport report, read_mcap(*source, from.string(), copy, AfterDamage::kGoOn));
+  if (report.messages == 0 && !report.whole)
+    return failure(ErrorCode::kUnsupported, "{}: nothing of it can be rescued{}", from.string(),
+                   report.damage.empty() ? "" : ": " + report.damage.front());
   writer.finish();
   out.drain();
   NERITIC_TRY_STATUS(out.status());

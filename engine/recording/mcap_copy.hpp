@@ -9,7 +9,7 @@
 namespace neritic::recording {
 
 // Gives an out all that it visits, under ids of the out's.
-class McapCopy final : public McapVisitor {
+class McapCopy : public McapVisitor {
  public:
   explicit McapCopy(McapOut& out) : out_(out) {}
   Status schema(std::uint16_t id, const McapSchema& schema) override;
@@ -23,7 +23,8 @@ class McapCopy final : public McapVisitor {
   std::map<std::uint16_t, std::uint16_t> schemas_, channels_;  // of the out, by the file's
 };
 
-// Writes the copy to a file, which takes its name when it is whole. kBadInput as read_mcap, kIo.
+// Writes the copy to a file, which takes its name when it is whole. kBadInput as read_mcap, kIo;
+// kUnsupported, and no file, if no message of a damaged one is good.
 Result<McapReport> repair_mcap(const std::filesystem::path& from, const std::filesystem::path& to);
 
 }  // namespace neritic::recording

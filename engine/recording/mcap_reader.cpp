@@ -3,6 +3,7 @@
 #include <zstd.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "engine/core/refusal.hpp"
@@ -36,6 +37,10 @@ class Reading {
   Status schema(McapCursor cursor, std::uint64_t at);
   Status channel(McapCursor cursor, std::uint64_t at);
   Status message(McapCursor cursor, std::uint64_t at);
+  Status recall_schema(std::uint16_t id);
+  Status recall_channel(std::uint16_t id);
+  void read_summary();
+  void tell_unknown();
   Status attachment(std::span<const std::byte> content, std::uint64_t at);
   Status metadata(McapCursor cursor, std::uint64_t at);
   void summary_record(Head head, McapCursor cursor, std::uint64_t at);
@@ -58,14 +63,90 @@ class Reading {
   std::vector<std::byte> content_, unpacked_;
   bool unpacked_whole_ = false;
   std::set<std::uint16_t> schemas_, channels_;
+  // Of the summary, which is looked up where those of the data section were damaged.
+  std::map<std::uint16_t, McapSchema> summary_schemas_;
+  std::map<std::uint16_t, McapChannel> summary_channels_;
+  std::set<std::uint64_t> summary_chunks_;  // where they begin
+  bool summary_read_ = false;
+  std::uint64_t unknown_ = 0, unknown_at_ = 0;  // messages of channels that are nowhere
+  std::set<std::uint16_t> unknown_channels_;
   std::set<std::pair<std::uint64_t, std::uint64_t>> chunks_;  // place and length
   std::uint32_t data_crc_ = 0, summary_crc_ = 0;
   bool in_summary_ = false, ended_ = false;
 };
 
+McapSchema schema_of(McapCursor& cursor) {
+  return {cursor.text(), cursor.text(), cursor.text()};
+}
+McapChannel channel_of(McapCursor& cursor) {
+  McapChannel channel{cursor.number<std::uint16_t>(), cursor.text(), cursor.text(), {}};
+  channel.metadata = cursor.words();
+  return channel;
+}
+
+// The schemas and channels of a summary whose CRC is right, and where the chunks are.
+void Reading::read_summary() {
+  if (std::exchange(summary_read_, true)) return;
+  constexpr std::size_t kFooter = kRecordHead_bytes + 20;
+  const std::uint64_t size = source_.size(), end_bytes = kFooter + kMcapMagic.size();
+  if (size < end_bytes + kMcapMagic.size()) return;
+  std::vector<std::byte> end(end_bytes);
+  if (!source_.read(size - end_bytes, end).ok()) return;
+  McapCursor footer(end);
+  const auto op = static_cast<McapOp>(footer.number<std::uint8_t>());
+  const auto length = footer.number<std::uint64_t>(), start = footer.number<std::uint64_t>();
+  footer.take(8);
+  const auto crc = footer.number<std::uint32_t>();
+  if (op != McapOp::kFooter || length != 20 || crc == 0 || start < kMcapMagic.size() ||
+      start > size - end_bytes || size - end_bytes - start > kMostRecord_bytes)
+    return;
+  std::vector<std::byte> summary(static_cast<std::size_t>(size - end_bytes - start));
+  if (!source_.read(start, summary).ok()) return;
+  if (crc_of(std::span(end).first(kFooter - sizeof crc), crc_of(summary)) != crc) return;
+  McapCursor cursor(summary);
+  while (cursor.left() > 0) {
+    const auto kind = static_cast<McapOp>(cursor.number<std::uint8_t>());
+    McapCursor content(cursor.take(cursor.number<std::uint64_t>()));
+    if (!cursor.whole()) return;
+    if (kind == McapOp::kChunkIndex) {
+      content.take(16);
+      summary_chunks_.insert(content.number<std::uint64_t>());
+    }
+    if (kind != McapOp::kSchema && kind != McapOp::kChannel) continue;
+    const auto id = content.number<std::uint16_t>();
+    if (kind == McapOp::kSchema) {
+      McapSchema schema = schema_of(content);
+      if (content.whole() && id != 0) summary_schemas_.emplace(id, std::move(schema));
+    } else {
+      McapChannel channel = channel_of(content);
+      if (content.whole()) summary_channels_.emplace(id, std::move(channel));
+    }
+  }
+}
+
+// Gives the visitor what the data section lacks and the summary has.
+Status Reading::recall_schema(std::uint16_t id) {
+  if (after_ == AfterDamage::kStop) return {};
+  read_summary();
+  const auto at = summary_schemas_.find(id);
+  if (at == summary_schemas_.end() || !schemas_.insert(id).second) return {};
+  return visitor_.schema(id, at->second);
+}
+
+Status Reading::recall_channel(std::uint16_t id) {
+  if (after_ == AfterDamage::kStop) return {};
+  read_summary();
+  const auto at = summary_channels_.find(id);
+  if (at == summary_channels_.end()) return {};
+  const std::uint16_t schema = at->second.schema;
+  if (schema != 0 && !schemas_.contains(schema)) NERITIC_TRY_STATUS(recall_schema(schema));
+  if ((schema != 0 && !schemas_.contains(schema)) || !channels_.insert(id).second) return {};
+  return visitor_.channel(id, at->second);
+}
+
 Status Reading::schema(McapCursor cursor, std::uint64_t at) {
   const auto id = cursor.number<std::uint16_t>();
-  McapSchema schema{cursor.text(), cursor.text(), cursor.text()};
+  const McapSchema schema = schema_of(cursor);
   if (!cursor.whole() || id == 0) return damaged(at, "a schema that is cut off"), Status();
   if (!schemas_.insert(id).second) return {};
   return visitor_.schema(id, schema);
@@ -73,9 +154,10 @@ Status Reading::schema(McapCursor cursor, std::uint64_t at) {
 
 Status Reading::channel(McapCursor cursor, std::uint64_t at) {
   const auto id = cursor.number<std::uint16_t>();
-  McapChannel channel{cursor.number<std::uint16_t>(), cursor.text(), cursor.text(), {}};
-  channel.metadata = cursor.words();
+  const McapChannel channel = channel_of(cursor);
   if (!cursor.whole()) return damaged(at, "a channel that is cut off"), Status();
+  if (channel.schema != 0 && !schemas_.contains(channel.schema))
+    NERITIC_TRY_STATUS(recall_schema(channel.schema));
   if (channel.schema != 0 && !schemas_.contains(channel.schema))
     return damaged(at, fmt::format("channel {} of schema {}, which comes nowhere before", id,
                                    channel.schema)),
@@ -92,14 +174,33 @@ Status Reading::message(McapCursor cursor, std::uint64_t at) {
                       {}};
   if (!cursor.whole()) return damaged(at, "a message that is cut off"), Status();
   message.data = cursor.rest();
-  if (!channels_.contains(message.channel))
-    return damaged(at, fmt::format("a message of channel {}, which comes nowhere before",
-                                   message.channel)),
-           Status();
+  if (!channels_.contains(message.channel)) NERITIC_TRY_STATUS(recall_channel(message.channel));
+  if (!channels_.contains(message.channel)) {
+    if (unknown_++ == 0) unknown_at_ = at;
+    unknown_channels_.insert(message.channel);
+    if (after_ == AfterDamage::kStop) tell_unknown();
+    return {};
+  }
   const bool first = report_.messages++ == 0;
   report_.first_ns = first ? message.log_ns : std::min(report_.first_ns, message.log_ns);
   report_.last_ns = first ? message.log_ns : std::max(report_.last_ns, message.log_ns);
   return visitor_.message(message);
+}
+
+// One damage for all such messages of the file.
+void Reading::tell_unknown() {
+  if (unknown_ == 0) return;
+  const std::size_t channels = unknown_channels_.size();
+  if (unknown_ == 1)
+    damaged(unknown_at_, fmt::format("a message of channel {}, which comes nowhere before",
+                                     *unknown_channels_.begin()));
+  else
+    damaged(unknown_at_,
+            fmt::format("{} messages of {}, which come{} nowhere before", unknown_,
+                        channels == 1 ? fmt::format("channel {}", *unknown_channels_.begin())
+                                      : fmt::format("{} channels", channels),
+                        channels == 1 ? "s" : ""));
+  unknown_ = 0;
 }
 
 // Into unpacked_; says what is wrong else.
@@ -222,6 +323,18 @@ Result<Reading::Next> Reading::record() {
   McapCursor cursor(bytes);
   const Head head{static_cast<McapOp>(cursor.number<std::uint8_t>()),
                   cursor.number<std::uint64_t>()};
+  if (after_ == AfterDamage::kGoOn) {
+    // A record whose head is damaged goes on into the next chunk, or says that none comes.
+    read_summary();
+    const auto next = summary_chunks_.upper_bound(from);
+    const bool last = head.op == McapOp::kDataEnd || head.op == McapOp::kFooter;
+    if (next != summary_chunks_.end() && *next < source_.size() &&
+        (last || head.length > *next - from || from + kRecordHead_bytes + head.length > *next)) {
+      damaged(from, "a record that does not end before the next chunk");
+      at_ = *next;
+      return Next::kGoOn;
+    }
+  }
   // A file that was cut off ends within a record.
   if (head.length > left - kRecordHead_bytes) return Next::kEnd;
   if (head.length > kMostRecord_bytes) {
@@ -305,6 +418,7 @@ Result<McapReport> Reading::run() {
     NERITIC_TRY(const Next next, record());
     if (next == Next::kEnd) break;
   }
+  tell_unknown();
   report_.whole = ended_ && report_.damages == 0;
   return report_;
 }

@@ -26,7 +26,8 @@ Result<std::unique_ptr<McapSource>> open_mcap(const std::filesystem::path& path)
 std::unique_ptr<McapSource> mcap_of(std::span<const std::byte> bytes);
 
 // Gets all that is found, in the order of the file. A schema and a channel come before the messages
-// that need them; the summary's copies are left out. An Error ends the reading.
+// that need them; the summary's copies are left out, but where the others were damaged and the
+// reading goes on. An Error ends the reading.
 class McapVisitor {
  public:
   virtual ~McapVisitor() = default;

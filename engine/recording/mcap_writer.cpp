@@ -72,6 +72,7 @@ std::uint16_t McapWriter::add_schema(McapSchema schema) {
   NERITIC_CHECK(schemas_.size() < kMostSchemas, "{} schemas", schemas_.size());
   schemas_.push_back(std::move(schema));
   schema_in_file_.push_back(false);
+  schema_told_.push_back(false);
   return static_cast<std::uint16_t>(schemas_.size());  // from 1
 }
 
@@ -80,6 +81,7 @@ std::uint16_t McapWriter::add_channel(McapChannel channel) {
                 "{} channels, schema {} of {}", channels_.size(), channel.schema, schemas_.size());
   channels_.push_back(std::move(channel));
   channel_in_file_.push_back(false);
+  channel_told_.push_back(false);
   counts_.push_back(0);
   return static_cast<std::uint16_t>(channels_.size() - 1);
 }
@@ -89,14 +91,14 @@ void McapWriter::message(const McapMessage& message) {
                 channels_.size());
   const McapChannel& channel = channels_[message.channel];
   // In the first chunk that needs them, so that a file cut off behind it reads.
-  if (channel.schema > 0 && !schema_in_file_[channel.schema - 1u]) {
+  if (channel.schema > 0 && !schema_told_[channel.schema - 1u]) {
     put_record(chunk_, McapOp::kSchema,
                schema_content(channel.schema, schemas_[channel.schema - 1u]));
-    schema_in_file_[channel.schema - 1u] = true;
+    schema_in_file_[channel.schema - 1u] = schema_told_[channel.schema - 1u] = true;
   }
-  if (!channel_in_file_[message.channel]) {
+  if (!channel_told_[message.channel]) {
     put_record(chunk_, McapOp::kChannel, channel_content(message.channel, channel));
-    channel_in_file_[message.channel] = true;
+    channel_in_file_[message.channel] = channel_told_[message.channel] = true;
   }
   places_[message.channel].emplace_back(message.log_ns, chunk_.size());
   put(chunk_, static_cast<std::uint8_t>(McapOp::kMessage));
@@ -148,6 +150,12 @@ void McapWriter::end_chunk() {
   }
   facts.index_length = written_ - index_from;
   chunks_.push_back(std::move(facts));
+  since_told_bytes_ += chunk_.size();
+  if (since_told_bytes_ >= kChunk_bytes) {
+    since_told_bytes_ = 0;
+    std::fill(schema_told_.begin(), schema_told_.end(), false);
+    std::fill(channel_told_.begin(), channel_told_.end(), false);
+  }
   chunk_.clear();
   places_.clear();
   any_in_chunk_ = false;

@@ -12,7 +12,8 @@ namespace neritic::recording {
 
 class McapWriter final : public McapOut {
  public:
-  // A chunk is closed at this size; end_chunk() closes it sooner.
+  // A chunk is closed at this size; end_chunk() closes it sooner. After so many bytes schemas and
+  // channels come again, so that a reader that lost them goes on.
   static constexpr std::size_t kChunk_bytes = std::size_t{1} << 20;
 
   // profile: "ros2"; library: the program with its version. level: of zstd, 1 to 19; 0: chunks
@@ -50,7 +51,9 @@ class McapWriter final : public McapOut {
   std::uint32_t data_crc_ = 0;  // of all bytes so far
   std::vector<McapSchema> schemas_;
   std::vector<McapChannel> channels_;
-  std::vector<bool> schema_in_file_, channel_in_file_;
+  // In the file; and among the last kChunk_bytes of it.
+  std::vector<bool> schema_in_file_, channel_in_file_, schema_told_, channel_told_;
+  std::size_t since_told_bytes_ = 0;
   std::string chunk_;
   std::uint64_t first_ns_ = 0, last_ns_ = 0;
   bool any_in_chunk_ = false;

@@ -46,6 +46,13 @@ class Kept final : public McapVisitor {
   std::string all;
 };
 
+// Where the packed bytes of a chunk begin, from 0.
+std::size_t chunk_at(const std::string& bytes, int chunk) {
+  std::size_t at = bytes.find("zstd");
+  for (int i = 0; i < chunk; ++i) at = bytes.find("zstd", at + 1);
+  return at;
+}
+
 // Three chunks with two messages each.
 std::string three_chunks() {
   McapWriter writer("ros2", "test");
@@ -137,6 +144,73 @@ TEST(Mcap, ADamagedChunkIsLeftOutAndTheRestIsRead) {
   const auto all = read_mcap(*source, "a.mcap", nobody, AfterDamage::kGoOn);
   EXPECT_EQ(all->messages, 4u);
   EXPECT_EQ(all->damage.front().substr(0, 8), "at byte ");
+}
+
+// The schemas and channels are in the first chunk, and in the summary.
+TEST(Mcap, WithoutItsFirstChunkItIsReadByItsSummary) {
+  std::string bytes = three_chunks();
+  const std::size_t first = bytes.find("zstd");
+  bytes[first + 20] = static_cast<char>(bytes[first + 20] ^ 1);
+  Kept kept;
+  const auto all = read_mcap(*mcap_of(bytes_of(bytes)), "a.mcap", kept, AfterDamage::kGoOn);
+  EXPECT_EQ(all->messages, 4u);
+  EXPECT_EQ(all->chunks, 2u);
+  EXPECT_NE(kept.all.find("schema sensor_msgs/msg/Imu\nchannel /a1\nmessage 1 101 91 one\n"
+                          "channel /b2\nmessage 1 201 191 two\nmessage 2 102 92 one\n"),
+            std::string::npos)
+      << kept.all;
+  McapWriter writer("ros2", "test");
+  McapCopy copy(writer);
+  ASSERT_TRUE(read_mcap(*mcap_of(bytes_of(bytes)), "a.mcap", copy, AfterDamage::kGoOn).ok());
+  writer.finish();
+  McapVisitor nobody;
+  const auto again = read_mcap(*mcap_of(bytes_of(writer.take())), "new.mcap", nobody);
+  EXPECT_EQ(again->messages, 4u);
+  // Without a summary nobody knows them: one line says so.
+  bytes.resize(chunk_at(bytes, 2));
+  const auto none = read_mcap(*mcap_of(bytes_of(bytes)), "a.mcap", nobody, AfterDamage::kGoOn);
+  EXPECT_EQ(none->messages, 0u);
+  ASSERT_EQ(none->damages, 2u);
+  EXPECT_NE(none->damage[1].find(": 2 messages of 2 channels, which come nowhere before"),
+            std::string::npos)
+      << none->damage[1];
+}
+
+TEST(Mcap, AfterARecordOfAWrongLengthItGoesOnWithTheNextChunk) {
+  const std::string bytes = three_chunks();
+  // The head of the second chunk's record: its kind, then its length.
+  const std::size_t second = chunk_at(bytes, 1);
+  const std::size_t head = second - 4 - 4 - 8 - 16 - 9;
+  ASSERT_EQ(bytes[head], '\6');
+  for (std::size_t at = head; at < head + 9; ++at)
+    for (int bit = 0; bit < 8; ++bit) {
+      std::string changed = bytes;
+      changed[at] = static_cast<char>(changed[at] ^ 1 << bit);
+      McapVisitor nobody;
+      const auto report =
+          read_mcap(*mcap_of(bytes_of(changed)), "bad.mcap", nobody, AfterDamage::kGoOn);
+      ASSERT_TRUE(report.ok()) << report.error().message;
+      EXPECT_FALSE(report->whole);
+      EXPECT_EQ(report->messages, 4u) << at - head << " " << bit;
+    }
+}
+
+// A chunk of the full size has all schemas and channels of its messages.
+TEST(Mcap, AFullChunkStandsAlone) {
+  McapWriter writer("ros2", "test");
+  const auto schema = writer.add_schema(ros_schema("sensor_msgs/msg/Imu"));
+  const auto a = writer.add_channel({schema, "/a", "cdr", {{"a", "1"}}});
+  const std::string large(McapWriter::kChunk_bytes, 'x');
+  for (std::uint32_t i = 0; i < 3; ++i) writer.message({a, i, i, i, bytes_of(large)});
+  writer.finish();
+  std::string bytes = writer.take();
+  const std::size_t first = bytes.find("zstd");
+  bytes[first + 20] = static_cast<char>(bytes[first + 20] ^ 1);
+  bytes.resize(chunk_at(bytes, 2));
+  McapVisitor nobody;
+  const auto rest = read_mcap(*mcap_of(bytes_of(bytes)), "a.mcap", nobody, AfterDamage::kGoOn);
+  EXPECT_EQ(rest->messages, 1u);
+  EXPECT_EQ(rest->damages, 1u);
 }
 
 TEST(Mcap, OtherFilesAreRefusedInOneLine) {
