@@ -43,12 +43,13 @@ struct SampleLog {
   std::vector<std::string> sources;  // by SourceId
   std::vector<Entry> entries;
   std::vector<std::uint64_t> hashes;   // one more than there are steps
-  bool whole = true;                   // read from a file that has its end
+  bool whole = true;                   // read from a file that has its end and all steps
   std::uint64_t first_step = 0;        // of the run, where the recording begins
   std::string scene_path, scene_text;  // empty: of no scene
   std::uint64_t scene_hash = 0;
   std::vector<std::byte> start_state;  // a saved state; empty: it begins at the scene's start
-  std::string damage;                  // where the file is damaged, up to where it was read
+  std::string damage;                  // where the file is damaged, or what is missing: it is read
+                                       // up to there
 
   std::uint64_t steps() const { return hashes.empty() ? 0 : hashes.size() - 1; }
 };

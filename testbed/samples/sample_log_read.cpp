@@ -2,6 +2,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
@@ -68,6 +69,9 @@ class LogVisitor final : public recording::McapVisitor {
   const std::string& name_;
   SampleLog log_;
   bool known_ = false;  // its metadata came
+  bool gap_ = false;    // steps are missing: nothing that comes later is of use
+  // Of what comes first after steps that are missing, if they are.
+  std::optional<Error> doubt_;
   std::map<std::uint16_t, recording::McapSchema> schemas_;
   std::map<std::uint16_t, Channel> channels_;
 };
@@ -149,6 +153,8 @@ Status LogVisitor::message(const recording::McapMessage& message) {
   if (at == channels_.end()) return {};
   if (!known_ && at->second.use != Use::kNone)
     return refusal(name_, "an MCAP file without what was run", "a recording of this program");
+  const bool is_step = at->second.use == Use::kStep;
+  if (gap_ || (doubt_ && !is_step)) return {};
   switch (at->second.use) {
     case Use::kStep:
       return step(message.data);
@@ -170,9 +176,17 @@ Status LogVisitor::step(std::span<const std::byte> bytes) {
   const auto hash = in.number<std::uint64_t>();
   if (!in.whole() || in.left() > 0)
     return bad_input("{}: step {} is not whole", name_, log_.hashes.size());
-  if (step != log_.first_step + log_.hashes.size())
-    return bad_input("{}: step {} found; accepted: {}, the next one", name_, step,
-                     log_.first_step + log_.hashes.size());
+  const std::uint64_t next = log_.first_step + log_.hashes.size();
+  // A recording that was repaired lacks what was damaged.
+  if (step > next) {
+    gap_ = true;
+    log_.damage = step == next + 1 ? fmt::format("step {} is missing", next)
+                                   : fmt::format("steps {} to {} are missing", next, step - 1);
+    return {};
+  }
+  if (step < next)
+    return bad_input("{}: step {} found; accepted: {}, the next one", name_, step, next);
+  if (doubt_) return *doubt_;
   log_.hashes.push_back(hash);
   return {};
 }
@@ -182,8 +196,14 @@ Status LogVisitor::source(std::span<const std::byte> bytes) {
   in.number<std::int32_t>(), in.number<std::uint32_t>(), in.text();
   const auto number = in.number<SourceId>();
   std::string source = in.text();
-  if (!in.whole() || in.left() > 0 || number != log_.sources.size() || !is_name(source))
-    return bad_input("{}: source {} has no name in printable text", name_, log_.sources.size());
+  const bool read = in.whole() && in.left() == 0 && is_name(source);
+  if (!read || number != log_.sources.size()) {
+    const Error error =
+        bad_input("{}: source {} has no name in printable text", name_, log_.sources.size());
+    if (!read || number < log_.sources.size()) return error;
+    doubt_ = error;
+    return {};
+  }
   log_.sources.push_back(std::move(source));
   return {};
 }
@@ -195,10 +215,14 @@ Status LogVisitor::sample(StreamId stream, std::span<const std::byte> bytes) {
   SampleLog::Entry entry{log_.steps(), read->sample};
   SampleHeader& header = entry.sample.header;
   header.stream = stream;
-  if (log_.hashes.empty())
-    return bad_input("{}: sample {} comes before the hash of the start", name_, index);
-  if (header.source >= log_.sources.size())
-    return bad_input("{}: sample {} is of no source of the file", name_, index);
+  if (log_.hashes.empty()) {
+    doubt_ = bad_input("{}: sample {} comes before the hash of the start", name_, index);
+    return {};
+  }
+  if (header.source >= log_.sources.size()) {
+    doubt_ = bad_input("{}: sample {} is of no source of the file", name_, index);
+    return {};
+  }
   if (!plausible(header.captured_ns) || !plausible(header.arrived_ns))
     return bad_input("{}: sample {} is of {} and {} ns; accepted: up to {} from 0", name_, index,
                      header.captured_ns, header.arrived_ns, kMostTime_ns);
@@ -212,9 +236,12 @@ Status LogVisitor::sample(StreamId stream, std::span<const std::byte> bytes) {
 Result<SampleLog> LogVisitor::log(const recording::McapReport& report) {
   if (!known_)
     return refusal(name_, "an MCAP file without what was run", "a recording of this program");
+  if (gap_ && log_.hashes.empty())
+    return failure(ErrorCode::kUnsupported, "{}: {}: it cannot be replayed", name_, log_.damage);
+  if (doubt_ && !gap_) return *doubt_;
   if (log_.hashes.empty()) return bad_input("{}: ends before the hash of its start", name_);
-  log_.whole = report.whole;
-  if (!report.damage.empty()) log_.damage = report.damage.front();
+  log_.whole = report.whole && !gap_;
+  if (!gap_ && !report.damage.empty()) log_.damage = report.damage.front();
   // For a step that did not end.
   while (!log_.entries.empty() && log_.entries.back().step >= log_.steps()) log_.entries.pop_back();
   return std::move(log_);

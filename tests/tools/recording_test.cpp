@@ -4,6 +4,8 @@
 
 #include "engine/core/json.hpp"
 #include "engine/core/npy.hpp"
+#include "engine/recording/mcap_copy.hpp"
+#include "engine/recording/mcap_writer.hpp"
 #include "testbed/samples/sample_log.hpp"
 #include "tests/tools/dive_physics.hpp"
 
@@ -21,13 +23,35 @@ class Recording : public DivePhysics {
     ASSERT_TRUE(write_text(scratch_ / "dive.toml", text).ok());
     ASSERT_EQ(dive("--headless --seconds 4 --record " + file("a.mcap")).status, 0);
   }
-  Outcome neritic(const std::string& arguments) {
-    const int raw =
-        std::system(fmt::format("'{}/tools/neritic' {} > '{}' 2> '{}'", NERITIC_BINARY_DIR,
-                                arguments, (scratch_ / "out").string(), (scratch_ / "err").string())
-                        .c_str());
-    return {WIFEXITED(raw) ? WEXITSTATUS(raw) : -1, read_text(scratch_ / "out").value(),
-            read_text(scratch_ / "err").value()};
+  // A copy of a.mcap in chunks of so many messages, one of which is damaged, from 0.
+  void damage(const std::string& name, int messages, int chunk) {
+    struct Copy final : recording::McapCopy {
+      Copy(recording::McapWriter& out, int of) : McapCopy(out), writer(out), most(of) {}
+      Status message(const recording::McapMessage& message) override {
+        const Status status = McapCopy::message(message);
+        if (++count % most == 0) writer.end_chunk();
+        return status;
+      }
+      recording::McapWriter& writer;
+      int most, count = 0;
+    };
+    recording::McapWriter writer("ros2", "test");
+    Copy copy(writer, messages);
+    const auto source = recording::open_mcap(scratch_ / "a.mcap").value();
+    ASSERT_TRUE(recording::read_mcap(*source, "a.mcap", copy).ok());
+    writer.finish();
+    std::string bytes = writer.take();
+    std::size_t at = bytes.find("zstd");
+    for (int i = 0; i < chunk; ++i) at = bytes.find("zstd", at + 1);
+    bytes.at(at + 20) = static_cast<char>(bytes[at + 20] ^ 1);
+    ASSERT_TRUE(write_text(scratch_ / name, bytes).ok());
+  }
+  // The number before " steps to replay".
+  static std::string steps_in(const std::string& words) {
+    const std::size_t end = words.find(" steps to replay");
+    if (end == std::string::npos) return "none in " + words;
+    const std::size_t from = words.rfind(' ', end - 1) + 1;
+    return words.substr(from, end - from);
   }
 };
 
@@ -72,6 +96,70 @@ TEST_F(Recording, ADamagedOneIsFoundAndMended) {
   const Outcome again = neritic("recording check " + file("new.mcap"));
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(neritic("recording repair " + file("a.mcap") + " --out " + file("a.mcap")).status, 2);
+}
+
+// What was good before the damage is replayed, what was good behind it is exported.
+TEST_F(Recording, ARepairedOneReplaysAsFarAsBefore) {
+  damage("bad.mcap", 500, 2);
+  const Outcome before = neritic("recording check " + file("bad.mcap"));
+  EXPECT_EQ(before.status, 1);
+  const std::string steps = steps_in(before.err);
+  EXPECT_GT(std::atoi(steps.c_str()), 0) << before.err;
+  const Outcome mended =
+      neritic("recording repair " + file("bad.mcap") + " --out " + file("new.mcap"));
+  EXPECT_EQ(mended.status, 0) << mended.err;
+  EXPECT_EQ(steps_in(mended.out), steps) << mended.out;
+  const Outcome after = neritic("recording check " + file("new.mcap"));
+  EXPECT_EQ(after.status, 1);
+  EXPECT_EQ(steps_in(after.err), steps);
+  EXPECT_NE(after.err.find(" are missing; "), std::string::npos) << after.err;
+  const Outcome replay = neritic("dive --headless --replay " + file("new.mcap"));
+  EXPECT_EQ(replay.status, 0) << replay.err;
+  EXPECT_NE(replay.out.find(steps + " of " + steps + " steps, each with the hash"),
+            std::string::npos)
+      << replay.out;
+  const Outcome csv = neritic("recording export " + file("new.mcap") + " --out " + file("t") +
+                              " --topic /rov/odometry");
+  ASSERT_EQ(csv.status, 0) << csv.err;
+  const auto times = table("t/rov_odometry.csv").at("time_s");
+  EXPECT_LT(times.size(), 241u);
+  EXPECT_NEAR(std::stod(times.back()), 4.0, 1e-6);
+}
+
+TEST_F(Recording, OneWithoutItsFirstChunkIsRescuedForExport) {
+  damage("bad.mcap", 500, 0);
+  const Outcome mended =
+      neritic("recording repair " + file("bad.mcap") + " --out " + file("new.mcap"));
+  EXPECT_EQ(mended.status, 0) << mended.err;
+  const Outcome check = neritic("recording check " + file("new.mcap"));
+  EXPECT_EQ(check.status, 1);
+  EXPECT_NE(check.err.find(" are missing: it cannot be replayed"), std::string::npos) << check.err;
+  EXPECT_EQ(std::ranges::count(check.err, '\n'), 1) << check.err;
+  ASSERT_EQ(neritic("recording export " + file("new.mcap") + " --out " + file("t")).status, 0);
+  EXPECT_NEAR(std::stod(table("t/rov_odometry.csv").at("time_s").back()), 4.0, 1e-6);
+}
+
+TEST_F(Recording, RepairMakesNoFileOfNothingAndReplacesNone) {
+  ASSERT_EQ(dive("--headless --seconds 0.5 --record " + file("a.mcap")).status, 0);
+  damage("bad.mcap", 1'000'000, 0);
+  const Outcome none =
+      neritic("recording repair " + file("bad.mcap") + " --out " + file("new.mcap"));
+  EXPECT_EQ(none.status, 1);
+  EXPECT_NE(none.err.find("nothing of it can be rescued"), std::string::npos) << none.err;
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "new.mcap"));
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "new.mcap.part"));
+  // A file that is there stays; the recording of a killed run gets its own name.
+  const Outcome there =
+      neritic("recording repair " + file("bad.mcap") + " --out " + file("a.mcap"));
+  EXPECT_EQ(there.status, 2);
+  EXPECT_NE(there.err.find("which is there already"), std::string::npos) << there.err;
+  std::filesystem::rename(scratch_ / "a.mcap", scratch_ / "killed.mcap.part");
+  const auto bytes = read_file(scratch_ / "killed.mcap.part").value();
+  const Outcome named =
+      neritic("recording repair " + file("killed.mcap.part") + " --out " + file("killed.mcap"));
+  EXPECT_EQ(named.status, 0) << named.err;
+  EXPECT_EQ(neritic("recording check " + file("killed.mcap")).status, 0);
+  EXPECT_EQ(read_file(scratch_ / "killed.mcap.part").value(), bytes);
 }
 
 TEST_F(Recording, ExportsTablesAndArrays) {

@@ -2,6 +2,7 @@
 // whole copy of a damaged one, and its messages as tables, arrays, sound and pictures.
 #include <nlohmann/json.hpp>
 
+#include "engine/core/growing_file.hpp"
 #include "engine/core/json.hpp"
 #include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
@@ -118,16 +119,24 @@ Result<std::string> info(const RecordingFlags& flags) {
   return text;
 }
 
+std::string steps_words(const testbed::SampleLog& log) {
+  return fmt::format(", {} steps to replay", log.steps());
+}
+
 Result<std::string> check(const RecordingFlags& flags) {
   NERITIC_TRY(const auto source, recording::open_mcap(flags.file));
   recording::McapVisitor nobody;
   NERITIC_TRY(const McapReport report,
               recording::read_mcap(*source, flags.file, nobody, recording::AfterDamage::kGoOn));
   std::string steps;
-  if (const auto log = testbed::read_sample_log(flags.file); log.ok())
-    steps = fmt::format(", {} steps to replay", log->steps());
+  const auto log = testbed::read_sample_log(flags.file);
+  if (log.ok())
+    steps = steps_words(*log);
   else if (report.whole)
     return log.error();
+  if (report.whole && log.ok() && !log->whole)
+    return failure(ErrorCode::kUnsupported, "{}: {}; {} chunks and {} messages are good{}",
+                   flags.file, log->damage, report.chunks, report.messages, steps);
   if (report.whole)
     return fmt::format("{}: whole; {} chunks with right CRCs and indexes, {} messages{}",
                        flags.file, report.chunks, report.messages, steps);
@@ -146,12 +155,27 @@ Result<std::string> repair(const RecordingFlags& flags) {
   std::error_code ignored;
   if (std::filesystem::equivalent(flags.file, flags.out, ignored))
     return refusal("--out", "the damaged file itself", "another name");
-  NERITIC_TRY(const McapReport report, recording::repair_mcap(flags.file, flags.out));
-  return fmt::format(
-      "{}: {} messages of {} chunks; {}", flags.out.string(), report.messages, report.chunks,
-      report.damages > 0 ? fmt::format("{} damaged places are left out", report.damages)
-      : report.whole     ? "the file was whole"
-                         : "the file had no end");
+  if (std::filesystem::is_regular_file(flags.out, ignored))
+    return refusal("--out", printable(flags.out.string()) + ", which is there already",
+                   "another name");
+  // While it is written it has the name of a killed run's recording, which may be the damaged one.
+  std::filesystem::path made = flags.out;
+  if (std::filesystem::equivalent(flags.file, part_of(flags.out), ignored)) made += ".repaired";
+  NERITIC_TRY(const McapReport report, recording::repair_mcap(flags.file, made));
+  if (made != flags.out) {
+    std::error_code error;
+    std::filesystem::rename(made, flags.out, error);
+    if (error)
+      return failure(ErrorCode::kIo, "{}: cannot be written: {}", flags.out.string(),
+                     error.message());
+  }
+  const auto log = testbed::read_sample_log(flags.out);
+  return fmt::format("{}: {} messages of {} chunks{}; {}", flags.out.string(), report.messages,
+                     report.chunks, log.ok() ? steps_words(*log) : "",
+                     report.damages > 0
+                         ? fmt::format("{} damaged places are left out", report.damages)
+                     : report.whole ? "the file was whole"
+                                    : "the file had no end");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "engine/core/files.hpp"
+#include "engine/recording/mcap_copy.hpp"
 #include "engine/recording/mcap_writer.hpp"
 #include "engine/sim/fields.hpp"
 #include "testbed/samples/authority.hpp"
@@ -92,6 +93,64 @@ TEST(SampleLog, TopicsHaveNamesThatRosAccepts) {
 
 std::span<const std::byte> bytes_of(const std::string& text) {
   return std::as_bytes(std::span(text));
+}
+
+// A copy without the messages from one to before another.
+class CopyWithout final : public recording::McapCopy {
+ public:
+  CopyWithout(recording::McapOut& out, int from, int to) : McapCopy(out), from_(from), to_(to) {}
+  Status message(const recording::McapMessage& message) override {
+    const int index = index_++;
+    return index >= from_ && index < to_ ? Status() : McapCopy::message(message);
+  }
+
+ private:
+  int index_ = 0, from_, to_;
+};
+
+// As a repaired recording is, of which a chunk was damaged.
+TEST(SampleLog, ItEndsBeforeStepsThatAreMissing) {
+  const SampleLog whole = log_of_every_kind();
+  const auto kept = inputs(whole);
+  recording::McapWriter file("ros2", "test");
+  SampleLogWriter out(file, whole);
+  out.source(whole.sources[0]);
+  for (std::uint64_t step = 0; step < 4; ++step) {
+    if (step == 1) out.source(whole.sources[1]);
+    if (step > 0) out.sample(kept[0].sample);
+    out.step(step, 0.25 * static_cast<double>(step), 0, whole.hashes[step]);
+  }
+  file.finish();
+  const std::string bytes = file.take();
+  const auto without = [&](int from, int to) {
+    recording::McapWriter writer("ros2", "test");
+    CopyWithout copy(writer, from, to);
+    EXPECT_TRUE(recording::read_mcap(*recording::mcap_of(bytes_of(bytes)), "", copy).ok());
+    writer.finish();
+    return parse_sample_log(bytes_of(writer.take()), "run.mcap");
+  };
+  const auto all = without(0, 0);
+  ASSERT_TRUE(all.ok()) << all.error().message;
+  EXPECT_TRUE(all->whole);
+  EXPECT_EQ(all->steps(), 3u);
+  // Steps 1 and 2, with their samples.
+  const auto middle = without(3, 7);
+  ASSERT_TRUE(middle.ok()) << middle.error().message;
+  EXPECT_FALSE(middle->whole);
+  EXPECT_EQ(middle->damage, "steps 1 to 2 are missing");
+  EXPECT_EQ(middle->steps(), 0u);
+  // Step 1 with the name of the source whose samples come next.
+  const auto named = without(2, 5);
+  ASSERT_TRUE(named.ok()) << named.error().message;
+  EXPECT_EQ(named->damage, "step 1 is missing");
+  EXPECT_TRUE(named->entries.empty());
+  const auto start = without(0, 2);
+  ASSERT_FALSE(start.ok());
+  EXPECT_EQ(start.error().message, "run.mcap: step 0 is missing: it cannot be replayed");
+  // The name alone is no damage, but a wrong recording.
+  const auto nameless = without(2, 3);
+  ASSERT_FALSE(nameless.ok());
+  EXPECT_NE(nameless.error().message.find("is of no source of the file"), std::string::npos);
 }
 
 // A run that was killed, wherever in the file (tests/recording tries every byte): the whole steps
