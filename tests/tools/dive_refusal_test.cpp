@@ -42,6 +42,8 @@ TEST_F(DivePhysics, FlagsThatDoNotFitEndInOneLine) {
        "still.toml, where nothing moves by physics; accepted: a scene where a vehicle has "
        "dynamics"},
       {"--headless --log-rate 0", "still.toml", "--log-rate: found "},
+      {"--headless --seconds 1 --record a.txt", "dive.toml",
+       "--record: found 'a.txt'; accepted: an .mcap; of a dive also an .xdf"},
       {"--realtime", "dive.toml",
        "--realtime: found a run with pictures; accepted: with --headless and without flags"},
       {"--headless --replay none.mcap", "dive.toml", "none.mcap"},

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/refusal.hpp"
+#include "engine/core/text.hpp"
 #include "tools/common/picture.hpp"
 #include "tools/neritic/dive_picture.hpp"
 
@@ -67,7 +68,12 @@ Status check_step_files(const StepFileFlags& flags, const std::vector<OutputFile
   files.insert(files.end(), others.begin(), others.end());
   for (const OutputFile& one : files) NERITIC_TRY_STATUS(check_output_file(one.flag, one.file));
   if (!flags.plot.empty()) files.push_back({"--plot", picture_data_path(flags.plot)});
-  return check_outputs_differ(files);
+  NERITIC_TRY_STATUS(check_outputs_differ(files));
+  const std::string ending = std::filesystem::path(flags.record).extension().string();
+  if (!ending.empty() && ending != ".mcap")
+    return refusal("--record", fmt::format("'{}'", printable(flags.record)),
+                   "an .mcap; of a dive also an .xdf");
+  return {};
 }
 
 StepFiles::StepFiles(const StepFileFlags& flags, const std::string& title,
