@@ -5,6 +5,7 @@
 #include <chrono>
 #include <thread>
 
+#include "engine/net/mxtp.hpp"
 #include "engine/net/socket.hpp"
 #include "tests/tools/dive_physics.hpp"
 
@@ -64,6 +65,39 @@ TEST_F(DeviceStamps, OfARunByTheHostsClockAreTheScenesAsThoseOfReadings) {
     EXPECT_GE(first, -0.5) << topic;
     EXPECT_LE(last, kSeconds + 1.0) << topic;
   }
+}
+
+// A suit that sends but a part of the body moves nobody, and is noted once.
+TEST_F(DeviceStamps, ASuitWithoutAWholeBodyIsNotedOnce) {
+  const std::uint16_t port =
+      net::UdpReceiver::bind({.transport = Transport::kUdp, .port = 0}).value().port();
+  const std::string assets = (test::source_dir() / "assets").string();
+  ASSERT_TRUE(write_text(scratch_ / "lab.toml",
+                         "[physics]\n[[objects]]\nname = \"diver\"\nmodel = \"" + assets +
+                             "/models/diver.glb\"\nhuman = \"" + assets +
+                             "/divers/recreational.toml\"\nposition_m = [4, -6, 0]\n[sources]\n" +
+                             fmt::format("suit = \"mxtp udp {}\"\n", port))
+                  .ok());
+  std::atomic<bool> stop{false};
+  std::thread sending([&] {
+    const auto sender =
+        net::UdpSender::create({.transport = Transport::kUdp, .port = port}).value();
+    std::array<net::MxtpPose, 5> poses;
+    for (std::uint32_t i = 0; i < poses.size(); ++i) poses[i].id = i + 1;
+    net::MxtpHeader header{.body_segments = 5};
+    for (; !stop; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
+      ++header.sample, header.time_ms += 5;
+      (void)sender.send(net::encode_mxtp(header, poses));
+    }
+  });
+  const Outcome outcome = dive("--headless --realtime --seconds 3", "lab.toml");
+  stop = true;
+  sending.join();
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string note = "source suit: no frame has all 23 segments of the body\n";
+  const std::size_t at = outcome.err.find(note);
+  EXPECT_NE(at, std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find(note, at + 1), std::string::npos) << outcome.err;
 }
 
 }  // namespace

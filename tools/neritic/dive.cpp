@@ -17,6 +17,7 @@
 #include "testbed/view/bindings.hpp"
 #include "testbed/view/dive_view.hpp"
 #include "tools/neritic/commands.hpp"
+#include "tools/neritic/device_notes.hpp"
 #include "tools/neritic/dive_flags.hpp"
 #include "tools/neritic/dive_physics.hpp"
 #include "tools/neritic/dive_served.hpp"
@@ -306,6 +307,8 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
     step_sinks = files->sinks();
   }
   if (view->recorder()) step_sinks.push_back(view->recorder());
+  std::optional<DeviceNotes> device_notes;
+  if (devices) step_sinks.push_back(&device_notes.emplace(*devices));
   std::unique_ptr<Markers> markers;
   if (!flags.markers.empty()) {
     NERITIC_TRY(markers, Markers::open(flags.markers, files ? files->recording() : nullptr));

@@ -9,6 +9,7 @@
 #include "testbed/record/source_watch.hpp"
 #include "testbed/samples/recorded_source.hpp"
 #include "testbed/simulation/mission_outlook.hpp"
+#include "tools/neritic/device_notes.hpp"
 #include "tools/neritic/dive_runs.hpp"
 #include "tools/neritic/dive_told.hpp"
 #include "tools/neritic/markers.hpp"
@@ -78,12 +79,14 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,
   }
   const bool live = !replay && !scene.sources.empty();
   std::unique_ptr<Devices> devices;
+  std::optional<DeviceNotes> device_notes;
   if (live) {
     if (!flags.realtime)
       log_warn("{}: its devices send in real time; only --realtime listens to them", flags.scene);
     NERITIC_TRY(devices,
                 Devices::open(scene, world, physics->inbox(), DeviceSource::Pace::kThread));
     for (SampleSource* source : devices->sources()) sources.push_back(source);
+    sinks.push_back(&device_notes.emplace(*devices));
   }
   std::unique_ptr<Markers> markers;
   if (!flags.markers.empty()) {

@@ -209,8 +209,6 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
   for (std::size_t i = 0; i < world.modems().all().size(); ++i)
     fmt::print("{}", modem_line(world.modems().all()[i].name, newest.state.modems()[i].counts));
   fmt::print("{}", source_lines(simulation.inbox()));
-  for (const DeviceHealth& health : pace.devices)
-    if (!health.trouble.empty()) fmt::print("source {}: {}\n", health.name, health.trouble);
   for (const DeviceHealth& health : pace.devices) log_info("{}", health_words(health, now_ns()));
   const std::string restored =
       pace.start_s > 0.0 ? fmt::format(" ({:g} s of them restored)", pace.start_s) : "";
