@@ -142,11 +142,11 @@ Result<std::string> check(const RecordingFlags& flags) {
                        flags.file, report.chunks, report.messages, steps);
   std::string lines;
   for (const std::string& damage : report.damage) lines += "; " + damage;
-  return failure(ErrorCode::kUnsupported,
-                 "{}: {}{}; {} chunks and {} messages are good{}; `neritic recording repair` makes "
-                 "a whole file of them",
-                 flags.file, report.damages > 0 ? "damaged" : "cut off: it has no end", lines,
-                 report.chunks, report.messages, steps);
+  return failure(
+      ErrorCode::kUnsupported, "{}: {}{}; {} chunks and {} messages are good{}{}", flags.file,
+      report.damages > 0 ? "damaged" : "cut off: it has no end", lines, report.chunks,
+      report.messages, steps,
+      report.messages > 0 ? "; `neritic recording repair` makes a whole file of them" : "");
 }
 
 Result<std::string> repair(const RecordingFlags& flags) {
