@@ -2,10 +2,13 @@
 import math
 import os
 import re
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
+import unittest.mock
 from types import SimpleNamespace
 
 try:
@@ -23,6 +26,9 @@ import intervals
 import questionnaires
 import report
 import rotations
+import runner
+import scenario
+import summary
 from human_state import HumanState
 
 
@@ -63,7 +69,7 @@ class Sonar(unittest.TestCase):
 
 class Pages(unittest.TestCase):
     def test_the_page_of_all_tells_what_failed_and_what_is_missing(self):
-        criterion = {"measure": "m", "statistic": "median", "where": {}, "less": None, "found": 0.5, "n": 3, "at_most": 1.0,
+        criterion = {"measure": "m", "statistic": "median", "where": {}, "less": None, "found": 0.5, "n": 3, "of": 3, "at_most": 1.0,
                      "at_least": None, "holds": True}
         told = {"experiment": "one", "runs": 3, "processor_s": 90.0, "criteria": [criterion, {**criterion, "holds": False}]}
         with tempfile.TemporaryDirectory() as folder:
@@ -73,6 +79,114 @@ class Pages(unittest.TestCase):
             self.assertEqual(os.listdir(folder), ["index.html"])
         for words in ("1 of 2 criteria hold; 3 runs took 1.5 minutes", "no &lt;GPU&gt;", "not run yet", "does not hold"):
             self.assertIn(words, text)
+
+
+class Judging(unittest.TestCase):
+    """Criteria on runs of which some gave no value."""
+
+    def judge(self, values, **criterion):
+        """values: a list, or two of them for b 0 and 1; None: no value."""
+        groups = values if isinstance(values[0], list) else [values]
+        results = [{"condition": {"b": b}, "seed": i, "settings": {"b": b}, "measures": {} if v is None else {"m": v},
+                    "failure": "no" if v is None else None, "processor_s": 0} for b, group in enumerate(groups) for i, v in enumerate(group)]
+        scenario = SimpleNamespace(kind=SimpleNamespace(MEASURES={"m": ("s", "")}), criteria=[{"measure": "m", **criterion}],
+                                   name="", title="", about="", kind_name="", seed=1, settings={}, vary={}, factors={})
+        told = summary.summarise(scenario, results)
+        return told["criteria"][0], told
+
+    def test_a_run_without_a_value_counts_as_the_worst(self):
+        few = [1.0, 2.0] + [None] * 8  # the survivors alone would pass
+        for statistic in ("median", "mean", "max", "share"):
+            self.assertFalse(self.judge(few, statistic=statistic, at_most=3.0 if statistic != "share" else 0.5)[0]["holds"], statistic)
+        for statistic in ("median", "mean", "min", "share"):
+            self.assertFalse(self.judge(few, statistic=statistic, at_least=0.5)[0]["holds"], statistic)
+        self.assertFalse(self.judge(few, at_least=0.0, at_most=3.0)[0]["holds"])
+
+    def test_the_statistic_is_told_where_it_is_determined(self):
+        found = self.judge([1.0, 2.0, 3.0, 4.0, None], at_most=3.5)[0]
+        self.assertEqual((found["found"], found["n"], found["of"], found["holds"]), (3.0, 4, 5, True))
+        found = self.judge([1.0, 2.0, 3.0, 4.0, None], at_least=2.0, at_most=9.0)[0]
+        self.assertEqual((found["found"], found["holds"]), (3.0, True))
+        self.assertEqual(self.judge([1.0, 2.0, None], statistic="min", at_most=1.5)[0]["found"], 1.0)
+        lost = self.judge([1.0, None, None], at_most=1.5)[0]
+        self.assertIsNone(lost["found"])
+        self.assertEqual(report.found(lost), "not determined (1 of 3 runs gave a value)")
+        self.assertEqual(report.found(found), "3 (4 of 5 runs)")
+
+    def test_a_comparison_is_not_won_by_the_others_failures(self):
+        both = {"where": {"b": 1}, "less": {"b": 0}, "at_most": -2.0}
+        self.assertTrue(self.judge([[9.0, 8.0, 9.0], [1.0, 1.0, 1.0]], **both)[0]["holds"])
+        self.assertFalse(self.judge([[9.0, None, None], [1.0, 1.0, 1.0]], **both)[0]["holds"])
+        self.assertFalse(self.judge([[9.0, 8.0, 9.0], [1.0, None, None]], **both)[0]["holds"])
+
+    def test_broken_runs_are_counted(self):
+        self.assertEqual(self.judge([1.0, None], at_most=3.0)[1]["broken"], 1)
+
+    def test_a_power_is_not_told_from_the_few_that_blocked(self):
+        import shark_figures
+        runs = [{"condition": {}, "seed": i, "measures": {"time_to_block_s": 1.5 + 0.02 * i} if i < 12 else {}} for i in range(40)]
+        line, = shark_figures.notes(runs)
+        self.assertIn("12 of 40 runs blocked", line)
+        self.assertNotIn("80 %", line)
+        self.assertIn("This is of those that blocked: 12 of 13 runs", next(shark_figures.notes(runs[:13])))
+
+
+def act(settings, seed, tools):
+    """A run whose controller does what the seed says."""
+    tools.write("here", "")
+    if seed == 2:
+        sys.exit(3)
+    if seed == 3:
+        os._exit(4)
+    if seed == 4:
+        raise ValueError("two\nlines")
+    if seed == 5:
+        time.sleep(1000)
+    if seed == 6:
+        os.spawnlp(os.P_NOWAIT, "sleep", "sleep", "1000")
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        time.sleep(1000)
+    if seed == 7:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return {"m": seed}, {}
+
+
+class Runs(unittest.TestCase):
+    """Runs whose code exits, dies or does not return."""
+
+    def run_all(self, out, seeds, workers, resume=False):
+        runs = [scenario.Run(i, {}, seed, {}) for i, seed in enumerate(seeds)]
+        plan = SimpleNamespace(name="x", kind_name="x", kind=SimpleNamespace(run=act), run_limit_s=1.0, list_runs=lambda: runs,
+                               fingerprint=lambda: "")
+        with unittest.mock.patch.object(runner, "GRACE_S", 0.5):
+            return runner.run_all(plan, out, "none", workers, resume, True)
+
+    def test_each_is_a_failed_run_and_the_others_go_on(self):
+        for workers in (1, 2):
+            with tempfile.TemporaryDirectory() as out, tempfile.TemporaryDirectory() as scratch, \
+                    unittest.mock.patch.object(tempfile, "tempdir", scratch):
+                results = self.run_all(out, range(1, 9), workers)
+                causes = [r["failure"] for r in results]
+                self.assertEqual([r["measures"] for r in results], [{"m": s} if s in (1, 8) else {} for s in range(1, 9)])
+                self.assertEqual((causes[0], causes[7]), (None, None))
+                self.assertRegex(causes[1], r"^SystemExit: 3 \(test_experiment.py:\d+\)$")
+                self.assertEqual(causes[2], "its process ended with status 4")
+                self.assertRegex(causes[3], r"^ValueError: two lines \(")
+                self.assertEqual(causes[4:6], ["did not end within 1 s of the clock (run_limit_s)"] * 2)
+                self.assertIn("killed by SIGKILL", causes[6])
+                self.assertEqual(os.listdir(scratch), [])  # what the runs wrote is gone
+                # They are kept as they ended, so that --resume has nothing left to do.
+                self.assertEqual(self.run_all(out, range(1, 9), workers, resume=True), results)
+
+    def test_the_limit_is_a_setting_that_decides_no_numbers(self):
+        import echo_sounder
+        path = os.path.join(scenario.SHIPPED, "echo_sounder.toml")
+        made = [scenario.Scenario(path, {"echo_sounder": echo_sounder}, sets=s) for s in ([], ["run_limit_s=7"])]
+        self.assertEqual([m.run_limit_s for m in made], [3600.0, 7])
+        self.assertEqual(made[0].fingerprint(), made[1].fingerprint())
+        for text in ("run_limit_s=0", "run_limit_s=x", "run_limit_s=[1,2]"):
+            with self.assertRaisesRegex(scenario.Refused, r"run_limit_s: found .*; accepted: a number"):
+                scenario.Scenario(path, {"echo_sounder": echo_sounder}, sets=[text])
 
 
 class Questionnaires(unittest.TestCase):

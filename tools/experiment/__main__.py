@@ -1,5 +1,5 @@
 """neritic experiment: runs a scenario many times and reports it. The program starts this module; README.md has the
-format of scenarios. Exit status: 0 every criterion holds, 1 one does not or it could not be done, 2 bad input,
+format of scenarios. Exit status: 0 every criterion holds, 1 one does not, a run broke or it could not be done, 2 bad input,
 130 interrupted (finished runs are kept)."""
 import argparse
 import json
@@ -105,7 +105,7 @@ def trade(asked):
 def tell(told, out):
     print(f"{told['experiment']}: {told['runs']} runs, {told['failed']} failed; {out}/report.html")
     for c in told["criteria"]:
-        print(f"  {'holds' if c['holds'] else 'DOES NOT HOLD':<14}{report.claim(c)}: {report.number(c['found'])}; asked: {report.limit(c)}")
+        print(f"  {'holds' if c['holds'] else 'DOES NOT HOLD':<14}{report.claim(c)}: {report.found(c)}; asked: {report.limit(c)}")
     for condition in told["conditions"]:
         for cause, n in condition["failures"].items():
             print(f"  {n} runs failed ({report.words(condition['condition'])}): {cause}")
@@ -135,7 +135,7 @@ def main():
         elif not asked.quiet:
             for t in told:
                 tell(t, os.path.join(asked.out, t["experiment"]) if asked.name == "all" else asked.out)
-        return 0 if not failed and all(t["passed"] for t in told) else 1
+        return 0 if not failed and all(t["passed"] and not t["broken"] for t in told) else 1
     except scenario.Refused as error:
         print(f"neritic: {error}", file=sys.stderr)
         return 2

@@ -11,11 +11,13 @@ def _binomial_at_most(k, n):
 
 
 def quantile(values, share):
-    """Linear between the sorted values (Hyndman and Fan 1996, type 7)."""
+    """Linear between the sorted values (Hyndman and Fan 1996, type 7); they may be infinite, of one sign."""
     ordered = sorted(values)
     at = share * (len(ordered) - 1)
     low = math.floor(at)
     high = min(low + 1, len(ordered) - 1)
+    if at == low or ordered[low] == ordered[high] or ordered[low] == -math.inf:
+        return ordered[low]
     return ordered[low] + (at - low) * (ordered[high] - ordered[low])
 
 

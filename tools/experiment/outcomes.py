@@ -23,7 +23,7 @@ KNOBS = [
     ("delay_s", [0.0, 0.1, 0.2, 0.5, 1.0], [], "delay of the detector's word, s"),
     ("navigation", ["truth", "measured"], [], "the ROV flies by"),
     ("crop_px", [16, 24, 32, 48, 64], LOOKS, "side of the gaze crops, pixels"),
-    ("detector", ["assumed", "small", "shipped"], LOOKS[1:], "nobody looks; 65 000 weights; 320 000"),
+    ("detector", ["assumed", "small", "shipped"], LOOKS[1:], "detector: none looks; 65 000 or 320 000 weights"),
     ("sonar_quality", ["draft", "standard", "reference"], ['shark_known_by="sonar"'], "quality of the sonar that knows the shark"),
 ]
 RUNS = 30

@@ -32,6 +32,12 @@ def claim(c):
             + (f" less that of {words(c['less'])}" if c["less"] is not None else ""))
 
 
+def found(c):
+    """The number, and of how many runs it is."""
+    runs = f"{c['n']} of {c['of']} runs"
+    return f"{number(c['found'])} ({runs})" if c["found"] is not None else f"not determined ({runs} gave a value)"
+
+
 def limit(criterion):
     low, high = criterion["at_least"], criterion["at_most"]
     if low is not None and high is not None:
@@ -69,12 +75,12 @@ def _cell(value):
 
 
 def _criteria_rows(summary):
-    rows = ["<tr><th>criterion</th><th>asked</th><th>found</th><th>runs</th><th></th></tr>"]
+    rows = ["<tr><th>criterion</th><th>asked</th><th>found</th><th></th></tr>"]
     for c in summary["criteria"]:
         name = claim(c)
         verdict = "holds" if c["holds"] else '<span class="no">does not hold</span>'
-        rows.append(f"<tr><td>{html.escape(name)}</td><td>{limit(c)}</td><td>{number(c['found'])}</td>"
-                    f"<td>{c['n']}</td><td>{verdict}</td></tr>")
+        rows.append(f"<tr><td>{html.escape(name)}</td><td>{limit(c)}</td><td>{found(c)}</td>"
+                    f"<td>{verdict}</td></tr>")
     return "<table>" + "".join(rows) + "</table>" if summary["criteria"] else ""
 
 
@@ -88,7 +94,7 @@ def _condition_table(scenario, condition):
         spread = "" if "share" in m else f"{number(m['min'])} to {number(m['max'])}"
         meaning = html.escape(scenario.kind.MEASURES[name][1])
         rows.append(f"<tr><td title=\"{meaning}\">{name}</td><td>{middle}</td><td>{interval}</td><td>{spread}</td>"
-                    f"<td>{m['n']}</td></tr>")
+                    f"<td>{m['n']} of {condition['runs']}</td></tr>")
     failures = "".join(f"<p class=\"no\">{n} of {condition['runs']} runs: {html.escape(cause)}</p>"
                        for cause, n in condition["failures"].items())
     return f"<h3>{html.escape(words(condition['condition']))}</h3>{failures}<table>{''.join(rows)}</table>"
@@ -99,7 +105,8 @@ def page(scenario, summary, pictures, results=()):
              f"<style>{STYLE}</style><h1>{html.escape(scenario.title)}</h1>",
              f"<p class=\"about\">{html.escape(scenario.about)}</p>",
              f"<p>{summary['runs']} runs with seeds from {summary['seed']} on; {summary['failed']} failed. "
-             "Medians with intervals by order statistics, shares with Wilson's.</p>",
+             "Medians with intervals by order statistics, shares with Wilson's, of the runs that gave a value. A criterion counts a "
+             "run without one as the worst there can be.</p>",
              _criteria_rows(summary)]
     if hasattr(scenario.kind, "notes"):
         parts += [f"<p>{html.escape(line)}</p>" for line in scenario.kind.notes(results)]
@@ -143,7 +150,7 @@ def index(summaries, failed, missing, out):
             verdict = "holds" if c["holds"] else '<span class="no">does not hold</span>'
             count, cost = (f"{s['runs']}", f"{s['processor_s']:.0f}") if first else ("", "")
             rows.append(f"<tr><td>{name}</td><td style=\"text-align:left\">{html.escape(claim(c))}</td><td>{limit(c)}</td>"
-                        f"<td>{number(c['found'])}</td><td>{verdict}</td><td>{count}</td><td>{cost}</td></tr>")
+                        f"<td>{found(c)}</td><td>{verdict}</td><td>{count}</td><td>{cost}</td></tr>")
     for name, why in failed:
         rows.append(f"<tr><td>{name}</td><td colspan=\"6\" style=\"text-align:left\"><span class=\"no\">could not be done:</span> "
                     f"{html.escape(why)}</td></tr>")

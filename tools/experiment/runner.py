@@ -1,13 +1,17 @@
-"""Runs of a scenario, many at once, each in a process of its own; what is finished is kept.
+"""Runs of a scenario, many at once, in processes of their own; what is finished is kept.
 
 OUT/runs.jsonl has a first line that names the scenario and then one line a finished run, in the order in which they
-ended; each is flushed to the disk. A line that a kill cut off is dropped when the file is resumed.
+ended; each is flushed to the disk. A line that a kill cut off is dropped when the file is resumed. A run whose process
+ends or does not return within the scenario's run_limit_s is a failed run; the others go on in a new process.
 """
-import concurrent.futures
-import concurrent.futures.process
+import collections
+import ctypes
 import json
+import multiprocessing
+import multiprocessing.connection
 import os
 import resource
+import shutil
 import signal
 import sys
 import tempfile
@@ -17,25 +21,43 @@ import traceback
 from scenario import Failed, Refused
 
 FORMAT = 3
+GRACE_S = 5.0  # for a run that is stopped to close what it opened
+PERSON_GRACE_S = 40.0  # of a person's dive, whose recording is ended
+PR_SET_PDEATHSIG = 1  # linux/prctl.h
+FORKS = multiprocessing.get_context("fork")
 
 
-def _one(do, run, program, out=""):
-    """One run. Its failure is a result, not the end of the others; Ctrl-C ends it where the worker is the main process."""
-    begun, worked, folder = time.monotonic(), _processor_s(), ""
+class _Stopped(BaseException):
+    """The run is stopped from outside. Not an Exception: nothing of a run catches it."""
+
+
+def _stop(*_):
+    raise _Stopped
+
+
+def _one(do, run, program, folder, out=""):
+    """One run. Its failure is a result, not the end of the others."""
+    begun, worked = time.monotonic(), _processor_s()
+    measures, series = {}, {}
     try:
-        with tempfile.TemporaryDirectory(prefix="neritic_experiment_") as folder:
-            measures, series = do(run.settings, run.seed, Tools(program, folder, out))
+        os.mkdir(folder)
+        measures, series = do(run.settings, run.seed, Tools(program, folder, out))
         failure = measures.pop("failure", None)
     except Failed as error:
-        measures, series, failure = {}, {}, str(error)
-    except Exception as error:  # a fault of ours: told with its place, the other runs go on
+        failure = str(error)
+    except _Stopped:
+        raise
+    except BaseException as error:  # a fault, or an exit, of the run's own code: told with its place
         place = traceback.extract_tb(error.__traceback__)[-1]
-        measures, series = {}, {}
         failure = f"{type(error).__name__}: {error} ({os.path.basename(place.filename)}:{place.lineno})"
         failure = failure.replace(folder + os.sep, "")  # so that the same cause has the same words
+    return _result(run, measures, failure, series, time.monotonic() - begun, _processor_s() - worked)
+
+
+def _result(run, measures, failure, series, wall_s, processor_s):
     return {"condition": run.condition, "seed": run.seed, "files": run.files, "settings": run.settings, "measures": measures,
-            "failure": failure, "series": series, "wall_s": round(time.monotonic() - begun, 3),
-            "processor_s": round(_processor_s() - worked, 3)}
+            "failure": failure and " ".join(failure.split()), "series": series, "wall_s": round(wall_s, 3),
+            "processor_s": round(processor_s, 3)}
 
 
 def _processor_s():
@@ -129,14 +151,15 @@ def run_all(scenario, out, program, workers, resume, quiet):
         files = {r.key(): r.files for r in runs}  # a file that was edited since makes its runs anew
         kept = {k: r for k, r in kept.items() if files.get(k, r["files"]) == r["files"]}
     missing = [r for r in runs if r.key() not in kept]
-    if any(getattr(scenario.kind, "alone", lambda _: False)(r.settings) for r in missing):
-        workers = 1
+    alone = any(getattr(scenario.kind, "alone", lambda _: False)(r.settings) for r in missing)
+    made = _results(scenario.kind.run, missing, program, 1 if alone else workers, out, scenario.run_limit_s,
+                    PERSON_GRACE_S if alone else GRACE_S)
     # Written anew when whole, so that a line that was cut off is gone.
     _write_lines(path, [head, *kept.values()])
     progress = Progress(scenario.name, len(runs), len(runs) - len(missing), quiet)
     try:
         with open(path, "a", encoding="utf-8") as file:
-            for result in _results(scenario.kind.run, missing, program, workers, out):
+            for result in made:
                 kept[json.dumps([result["condition"], result["seed"]], sort_keys=True)] = result
                 file.write(json.dumps(result) + "\n")
                 file.flush()
@@ -144,28 +167,123 @@ def run_all(scenario, out, program, workers, resume, quiet):
                 progress.step()
     except OSError as error:
         raise Failed(f"{path}: cannot be written: {error.strerror}; {len(kept)} finished runs are kept") from None
-    except concurrent.futures.process.BrokenProcessPool:
-        raise Failed(f"{scenario.name}: a run's process was killed, as where memory ends; {len(kept)} finished runs are kept, "
-                     "--resume goes on, --workers 1 needs less memory") from None
     finally:
+        made.close()
         progress.end()
     return [kept[r.key()] for r in runs]
 
 
-def _results(do, runs, program, workers, out):
-    if workers <= 1 or len(runs) <= 1:
-        for run in runs:
-            yield _one(do, run, program, out)
-        return
-    with concurrent.futures.ProcessPoolExecutor(workers, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)) as pool:
-        waiting = [pool.submit(_one, do, run, program, out) for run in runs]
+class _Worker:
+    """A process that makes one run at a time, in a process group of its own."""
+
+    def __init__(self, do, program, out, grace_s):
+        self.grace_s, self.run, self.folder, self.begun, self.ended = grace_s, None, None, 0.0, False
+        self.pipe, theirs = FORKS.Pipe()
+        self.process = FORKS.Process(target=_work, args=(theirs, do, program, out))
+        self.process.start()
+        theirs.close()
+
+    def begin(self, run, folder):
+        self.run, self.folder, self.begun = run, folder, time.monotonic()
         try:
-            for done in concurrent.futures.as_completed(waiting):
-                yield done.result()
-        except BaseException:
-            for one in waiting:
-                one.cancel()
-            raise
+            self.pipe.send((run, folder))
+        except OSError:
+            pass  # it has died: the next look tells
+
+    def take(self, limit_s):
+        """The result of its run if that is over; else None."""
+        taken = None
+        late = time.monotonic() - self.begun > limit_s
+        try:
+            if self.pipe.poll():
+                taken = self.pipe.recv()
+        except (EOFError, OSError):
+            self.process.join(self.grace_s)
+        if taken is None and (late or not self.process.is_alive()):
+            cause = f"did not end within {limit_s:g} s of the clock (run_limit_s)" if late else self._end_in_words()
+            self.end()
+            taken = _result(self.run, {}, cause, {}, time.monotonic() - self.begun, 0.0)
+        if taken is not None:
+            shutil.rmtree(self.folder, ignore_errors=True)
+            self.run = None
+        return taken
+
+    def _end_in_words(self):
+        status = self.process.exitcode
+        if status is None or status >= 0:
+            return f"its process ended with status {status}"
+        why = ", as where memory ends: --workers 1 needs less" if -status == signal.SIGKILL else ""
+        return f"its process was killed by {signal.Signals(-status).name}{why}"
+
+    def end(self):
+        """Ends the process: at once if it rests, after its run has closed what it opened if that listens."""
+        if self.ended:
+            return
+        self.ended = True
+        if self.process.is_alive():
+            if self.run is None:
+                self.pipe.send(None)
+            else:
+                self.process.terminate()
+            try:
+                self.process.join(self.grace_s)
+            finally:  # also where a second Ctrl-C ends the wait
+                self.process.kill()
+                self._kill_group()
+        self._kill_group()
+        self.process.join()
+        self.pipe.close()
+
+    def _kill_group(self):
+        """With the programs that the run started."""
+        try:
+            os.killpg(self.process.pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+
+
+def _work(pipe, do, program, out):
+    try:
+        signal.signal(signal.SIGTERM, _stop)
+        os.setpgid(0, 0)  # Ctrl-C goes to the main process alone, which ends this one
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+        while (asked := pipe.recv()) is not None:
+            pipe.send(_one(do, asked[0], program, asked[1], out))
+    except (_Stopped, EOFError, OSError):
+        pass
+
+
+def _results(do, runs, program, workers, out, limit_s, grace_s):
+    """The result of each run, as they end."""
+    waiting, pool = collections.deque(enumerate(runs)), []
+    if not waiting:
+        return
+    try:
+        base = tempfile.mkdtemp(prefix="neritic_experiment_")
+    except OSError as error:
+        raise Failed(f"{tempfile.gettempdir()}: cannot be written: {error.strerror}") from None
+    try:
+        for _ in range(max(1, min(workers, len(runs)))):
+            pool.append(_Worker(do, program, out, grace_s))
+        while waiting or any(w.run for w in pool):
+            for i, worker in enumerate(pool):
+                if worker.run is None and waiting:
+                    if not worker.process.is_alive():
+                        worker.end()
+                        worker = pool[i] = _Worker(do, program, out, grace_s)
+                    number, run = waiting.popleft()
+                    worker.begin(run, os.path.join(base, str(number)))
+            busy = [w for w in pool if w.run]
+            left_s = limit_s - time.monotonic() + min(w.begun for w in busy)
+            multiprocessing.connection.wait([x for w in busy for x in (w.pipe, w.process.sentinel)], max(0.0, left_s) + 0.01)
+            for worker in busy:
+                result = worker.take(limit_s)
+                if result is not None:
+                    yield result
+    finally:
+        for worker in pool:
+            worker.end()
+        shutil.rmtree(base, ignore_errors=True)
 
 
 def _write_lines(path, rows):

@@ -16,6 +16,7 @@ HERE = os.path.dirname(os.path.realpath(__file__))
 SHIPPED = os.path.normpath(os.path.join(HERE, "..", "..", "assets", "experiments"))
 STATISTICS = ("median", "mean", "min", "max", "share")
 MOST_RUNS = 1_000_000
+RUN_LIMIT_S = 3600.0  # of the clock, that a run may take
 
 
 class Refused(Exception):
@@ -135,7 +136,7 @@ class Scenario:
         head = data.get("experiment", {})
         own = ["task", "stages", "measures"] if isinstance(head, dict) and head.get("kind") == "task" else []
         check_keys(path, data, ["experiment", "settings", "vary", "factors", "criteria", *own])
-        check_keys(f"{path}: experiment", head, ["title", "about", "kind", "runs", "seed"])
+        check_keys(f"{path}: experiment", head, ["title", "about", "kind", "runs", "seed", "run_limit_s"])
         kind = head.get("kind")
         _word_of(f"{path}: experiment.kind", kind, kinds)
         self.kind_name = kind
@@ -145,6 +146,7 @@ class Scenario:
                             runs if runs is not None else head.get("runs", 1), 1, MOST_RUNS, True)
         self.seed = _number("--seed" if seed is not None else f"{path}: experiment.seed",
                             seed if seed is not None else head.get("seed", 1), 0, 2 ** 53, True)
+        self.run_limit_s = self._limit(f"{path}: experiment.run_limit_s", head.get("run_limit_s", RUN_LIMIT_S))
         known = self.kind.SETTINGS
         self.settings = {k: s.default for k, s in known.items()}
         for table in ("settings", "vary", "factors"):
@@ -178,6 +180,9 @@ class Scenario:
             raise Refused(f"{where}: found {value}; accepted: the lower number first")
         return [low, high]
 
+    def _limit(self, where, value):
+        return _number(where, value, 0.1, 1e7)
+
     def _levels(self, key, value):
         if not isinstance(value, list) or not value:
             raise Refused(f"{self.path}: factors.{key}: found {_words(value)}; accepted: a list of one level or more")
@@ -190,14 +195,18 @@ class Scenario:
         """key=value of --set, in TOML: a number, a word in quotes or bare; a list makes a factor."""
         key, mark, raw = text.partition("=")
         key = key.strip()
-        if not mark or key not in self.kind.SETTINGS:
-            near = difflib.get_close_matches(key, list(self.kind.SETTINGS), 1)
+        known = [*self.kind.SETTINGS, "run_limit_s"]
+        if not mark or key not in known:
+            near = difflib.get_close_matches(key, known, 1)
             raise Refused(f"--set: found \"{text}\"; accepted: KEY=VALUE, KEY one of "
-                          + (f"{near[0]} (the nearest), " if near else "") + ", ".join(self.kind.SETTINGS))
+                          + (f"{near[0]} (the nearest), " if near else "") + ", ".join(known))
         try:
             value = tomllib.loads(f"v = {raw}")["v"]
         except tomllib.TOMLDecodeError:
             value = raw.strip()
+        if key not in self.kind.SETTINGS:
+            self.run_limit_s = self._limit(f"--set {key}", value)
+            return
         self.vary.pop(key, None)
         self.factors.pop(key, None)
         if isinstance(value, list):

@@ -8,29 +8,42 @@ import report
 import summary
 from shark_scene import BESIDE_M
 
+ENOUGH = 0.9  # the share of runs that must block for their times to tell a power: those of the others are cut off
 LINES = ("-", "--", ":", "-.", (0, (1, 1)), (0, (5, 1)))  # of conditions, told apart in grey too
 
 
+def _enough(runs):
+    return len(_times(runs)) >= max(6, ENOUGH * len(runs))
+
+
 def _paired(results):
-    """(mean time, deviation of the differences by seed) of the first two conditions; None where there are not two."""
-    groups = [{r["seed"]: r["measures"]["time_to_block_s"] for r in group if "time_to_block_s" in r["measures"]}
-              for _, group in summary.by_condition(results)[:2]]
-    seeds = sorted(set(groups[0]) & set(groups[1])) if len(groups) == 2 else []
+    """(mean time, deviation of the differences by seed) of the first two conditions; None where there are not two, or where
+    too few of their runs blocked."""
+    groups = [group for _, group in summary.by_condition(results)[:2]]
+    if len(groups) < 2 or not all(_enough(group) for group in groups):
+        return None
+    times = [{r["seed"]: r["measures"]["time_to_block_s"] for r in group if "time_to_block_s" in r["measures"]} for group in groups]
+    seeds = sorted(set(times[0]) & set(times[1]))
     if len(seeds) < 6:
         return None
-    return float(np.mean(list(groups[0].values()))), float(np.std([groups[1][k] - groups[0][k] for k in seeds], ddof=1))
+    return float(np.mean(list(times[0].values()))), float(np.std([times[1][k] - times[0][k] for k in seeds], ddof=1))
 
 
 def notes(results):
     """Lines for the report."""
     for condition, group in summary.by_condition(results):
-        times = summary.values_of(group, "time_to_block_s")
-        runs = intervals.runs_to_tell(times) if len(times) >= 6 else None
+        times, name = summary.values_of(group, "time_to_block_s"), report.words(condition)
+        blocked = f"{len(times)} of {len(group)} runs blocked"
+        if len(group) >= 6 and not _enough(group):
+            yield (f"{name}: {blocked}. The times of the others are longer than a run, so these tell no power: compare the shares "
+                   "that blocked.")
+            continue
+        runs = intervals.runs_to_tell(times) if _enough(group) else None
         if runs:
-            name = report.words(condition)
             yield (f"{name}: {runs} runs a group tell a time to block that is 10 % longer, with a power of 80 % at 5 % (two-sided, "
                    f"unpaired); by drawing groups of {max(runs, 20)} from these runs the power is "
-                   f"{100 * intervals.power_by_draws(times, max(runs, 20)):.0f} %.")
+                   f"{100 * intervals.power_by_draws(times, max(runs, 20)):.0f} %."
+                   + (f" This is of those that blocked: {blocked}." if len(times) < len(group) else ""))
     spread = _paired(results)
     if spread is not None:
         pairs = math.ceil(((intervals.Z95 + intervals.normal_quantile(0.8)) * spread[1] / (0.1 * spread[0])) ** 2)
@@ -39,14 +52,13 @@ def notes(results):
 
 
 def figures(scenario, results, style):
-    done = [r for r in results if r["series"]]
-    if not done:
+    if not any(r["series"] for r in results):
         return
     groups = {}
-    for r in done:
+    for r in results:
         groups.setdefault(report.words(r["condition"]), []).append(r)
     shown = list(groups.items())[:len(LINES)]
-    fig = style.figure(900, 640)
+    fig = style.figure(900, 652)
     _distances(style.area(fig, 70, 60, 870, 320), shown, style)
     _shares(style.area(fig, 70, 400, 450, 590), shown, style)
     _power(style.area(fig, 520, 400, 870, 590), shown, _paired(results), style)
@@ -59,7 +71,7 @@ def _times(runs):
 
 def _distances(ax, groups, style):
     for i, (name, runs) in enumerate(groups):
-        for k, r in enumerate(runs[:30]):
+        for k, r in enumerate([r for r in runs if r["series"]][:30]):
             ax.plot(r["series"]["t"], r["series"]["beside"], color=style.color(i), lw=0.8, alpha=0.6, ls=LINES[i],
                     label=name if k == 0 else None)
     ax.axhline(BESIDE_M, color=style.INK, lw=0.9, ls="--")
@@ -84,18 +96,23 @@ def _power(ax, groups, spread, style):
     n = np.unique(np.geomspace(2, 2000, 120).astype(int))
     for i, (_, runs) in enumerate(groups):
         times = _times(runs)
-        if len(times) >= 6:
+        if _enough(runs):
             ax.plot(n, [intervals.power_of(times, int(k)) for k in n], color=style.color(i), lw=1.4, ls=LINES[i])
             drawn = [20, 60, 200, 600, 2000]
             ax.plot(drawn, [intervals.power_by_draws(times, k) for k in drawn], "o", color=style.color(i), ms=4.5, mec=style.INK, mew=0.5)
+    words = ["runs a group"]
     if spread is not None:
         mean, deviation = spread
         ax.plot(n, [intervals.normal_share(0.1 * mean * math.sqrt(k) / max(deviation, 1e-12) - intervals.Z95) for k in n],
                 color=style.INK, lw=1.2, ls=":")
-        ax.text(0.35, 0.06, "dotted: the same seeds in both groups", transform=ax.transAxes, size=7.5)
+        words[0] += " (dotted: the same seeds in both groups)"
+    few = sum(not _enough(runs) for _, runs in groups)
+    if few:
+        words.append(f"not shown: {few} of {len(groups)} conditions, in which too few runs blocked")
     ax.set_xscale("log")
     style.plain_log(ax.xaxis)
     ax.axhline(0.8, color=style.INK, lw=0.9, ls="--")
+    ax.set_xlim(n[0] / 1.4, n[-1] * 1.4)
     ax.set_ylim(0, 1.03)
-    ax.set_xlabel("runs a group")
+    ax.set_xlabel("\n".join(words))
     style.title(ax, "Power to tell 10 % more time (dots: by draws)")

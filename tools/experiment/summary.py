@@ -29,7 +29,7 @@ def _statistic(name, values):
 
 
 def summarise(scenario, results):
-    """Plain data: {conditions: [...], criteria: [...], passed}."""
+    """Plain data: {conditions: [...], criteria: [...], passed}. Broken: failed without any measure, as by an exception."""
     conditions = []
     for condition, group in by_condition(results):
         measures = {}
@@ -51,26 +51,36 @@ def summarise(scenario, results):
     return {"experiment": scenario.name, "title": scenario.title, "about": scenario.about, "kind": scenario.kind_name,
             "seed": scenario.seed, "runs": len(results),
             "processor_s": round(sum(r["processor_s"] for r in results), 1), "failed": sum(1 for r in results if r["failure"]),
+            "broken": sum(1 for r in results if r["failure"] and not r["measures"]),
             "settings": scenario.settings, "vary": scenario.vary, "factors": scenario.factors,
             "conditions": conditions, "criteria": criteria, "passed": all(c["holds"] for c in criteria)}
 
 
 def _judge(scenario, results, criterion):
-    """less: the same statistic of those runs is subtracted, so that two conditions are compared."""
+    """A run that gave no value counts as the worst there can be: above at_most, below at_least. A statistic that this leaves
+    open is not determined, and the criterion does not hold. less: the same statistic of those runs is subtracted, so that two
+    conditions are compared; its missing values count the other way."""
     where, less, name = criterion.get("where", {}), criterion.get("less"), criterion.get("statistic", "median")
 
-    def of(condition):
-        chosen = [r for r in results if all(r["settings"].get(k) == v for k, v in condition.items())]
-        values = values_of(chosen, criterion["measure"])
-        # A run that failed has no value: a share counts it against the criterion.
-        if name == "share":
-            values += [1.0 if "at_most" in criterion else 0.0] * (len(chosen) - len(values))
-        return _statistic(name, values), len(values)
+    def chosen(condition):
+        return [r for r in results if all(r["settings"].get(k) == v for k, v in condition.items())]
 
-    found, n = of(where)
-    if less is not None and found is not None:
-        base, _ = of(less)
-        found = None if base is None else found - base
-    holds = found is not None and found <= criterion.get("at_most", math.inf) and found >= criterion.get("at_least", -math.inf)
-    return {"measure": criterion["measure"], "statistic": name, "where": where, "less": less, "found": found, "n": n,
-            "at_most": criterion.get("at_most"), "at_least": criterion.get("at_least"), "holds": holds}
+    groups = [chosen(c) for c in ([where] if less is None else [where, less])]
+    values = [values_of(group, criterion["measure"]) for group in groups]
+
+    def found_if(missing_are_high):
+        parts = []
+        for group, given, high in zip(groups, values, (missing_are_high, not missing_are_high)):
+            missing = float(high) if name == "share" else math.inf if high else -math.inf
+            parts.append(_statistic(name, given + [missing] * (len(group) - len(given))))
+        return None if None in parts else parts[0] - sum(parts[1:])
+
+    found, holds = None, True
+    for limit, high in (("at_least", False), ("at_most", True)):
+        if limit in criterion and holds:  # what is told is what did not hold
+            found = found_if(high)
+            holds = found is not None and (found <= criterion[limit] if high else found >= criterion[limit])
+    return {"measure": criterion["measure"], "statistic": name, "where": where, "less": less,
+            "found": found if found is not None and math.isfinite(found) else None, "n": sum(len(v) for v in values),
+            "of": sum(len(g) for g in groups), "at_most": criterion.get("at_most"), "at_least": criterion.get("at_least"),
+            "holds": holds}

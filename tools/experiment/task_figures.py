@@ -60,7 +60,8 @@ def _outcomes(task, scenario, judged, groups, names, style):
         ax.set_xlim(-0.5, len(groups) - 0.5)
         ax.set_xticks(range(len(groups)), names, rotation=0 if len(groups) < 4 else 25)
         ax.set_ylabel("share of the runs" if unit == "yes or no" else unit)
-        style.title(ax, _words(task, name))
+        given, of = sum(len(summary.values_of(group, name)) for _, group in groups), sum(len(group) for _, group in groups)
+        style.title(ax, _words(task, name) + ("" if given == of else f" ({given} of {of} runs gave a value)"))
     return fig
 
 
