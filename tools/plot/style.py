@@ -143,16 +143,15 @@ def room(ax, values, least, below=0.06, above=0.08):
 
 
 def gaps(time, flags):
-    """(from, length) of each time over which a flag holds, to the next row."""
+    """(from, length) of each time over which a flag holds. A row tells of the time since the row before, as the program
+    counts: what follows a flagged row, perhaps hours without one, is not its own."""
     out, since = [], None
     for i, flag in enumerate(flags):
         if flag and since is None:
-            since = time[i]
-        if not flag and since is not None:
-            out.append((since, time[i] - since))
+            since = time[max(i - 1, 0)]
+        if since is not None and (not flag or i + 1 == len(flags)):
+            out.append((since, time[i if flag else i - 1] - since))
             since = None
-    if since is not None:
-        out.append((since, time[-1] - since))
     return out
 
 
