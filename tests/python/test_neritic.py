@@ -6,6 +6,7 @@ import importlib.util
 import inspect
 import io
 import os
+import shutil
 import socket
 import tempfile
 import threading
@@ -266,6 +267,72 @@ class Worlds(unittest.TestCase):
         with self.assertRaises(neritic.BadInput):
             world.tick()
 
+    def test_what_the_core_would_take_or_tell_badly_is_refused_in_one_line(self):
+        world = neritic.open(str(ROOT / "assets/scenes/dive.toml"), seed=1)
+        rov, diver = world["rov"], world["diver"]
+        stands = np.tile([0.0, 0.0, 0.0, 1.0], 15)
+        world.tick(4)
+        diver.joints(stands)
+        diver.jacket(inflate=1, dump=np.True_)
+        bad = {
+            "accepted: a word in quotes": (lambda: world.truth(3), lambda: world.images(3), lambda: rov.command(3, [1]),
+                                           lambda: world.inject("diver/buttons", [0, 0, 0], source=3), lambda: world.on(3, print),
+                                           lambda: world.link(3), lambda: world.off(3), lambda: neritic.vector(3),
+                                           lambda: neritic.open(MISSION, device=3), lambda: neritic.connect("tcp://127.0.0.1:1", name=3)),
+            "accepted: a function": (lambda: world.on("diver/motion", 3),),
+            "accepted: bytes that save": (lambda: world.restore(3), lambda: world.restore("x")),
+            "accepted: a text or bytes": (lambda: rov.send(None), lambda: rov.send(7)),
+            "accepted: a file's path": (lambda: neritic.open(None), lambda: neritic.vector("hover", vehicle=3), lambda: world.record(3).__enter__()),
+            "accepted: 60": (lambda: diver.joints(np.zeros(59)), lambda: diver.joints(np.zeros(61))),
+            "a quaternion of length": (lambda: diver.joints(np.zeros(60)), lambda: diver.joints(stands * 1e200), lambda: diver.head([0] * 4),
+                                       lambda: diver.joints(stands * np.nan)),
+            "accepted: True or False": (lambda: diver.jacket(inflate=-1), lambda: diver.jacket(dump="x"),
+                                        lambda: neritic.open(MISSION, real_time="x")),
+            "accepted: a whole number from 0 to 3": (lambda: diver.gas(9), lambda: diver.gas(-1)),
+            "stamp: found 99 s; accepted: up to now": (lambda: world.inject("diver/buttons", [0, 0, 0], "suit", stamp=99.0),),
+            "ticks: count: found": (lambda: world.ticks(count=-3), lambda: world.ticks(count="x")),
+            "accepted: .*number": (lambda: rov.goto(None, 0, 0), lambda: rov.goto("1", 0, 0), lambda: rov.goto(1j, 0, 0),
+                                   lambda: world.tick(True)),
+            "agent: found": (lambda: world[3], lambda: world[[]]),
+        }
+        for words, calls in bad.items():
+            for i, call in enumerate(calls):
+                with self.subTest(words=words, i=i), self.assertRaisesRegex(neritic.BadInput, words) as caught:
+                    call()
+                self.assertNotIn("\n", str(caught.exception))
+        for state in (bytearray(world.save()), memoryview(world.save()), np.frombuffer(world.save(), np.uint8)):
+            world.restore(state)
+        self.assertEqual([obs.step for obs in asyncio.run(self.all_of(world.ticks(np.int64(3), count=np.int64(2))))], [7, 10])
+
+    @staticmethod
+    async def all_of(ticks):
+        return [one async for one in ticks]
+
+    def test_a_recording_that_cannot_be_written_is_refused_before_the_trial(self):
+        world = neritic.open(MISSION, seed=1)
+        with tempfile.TemporaryDirectory() as folder:
+            Path(folder, "file").write_text("")
+            Path(folder, "run.mcap").mkdir()
+            for name in ("none/run", "file/run", "run", "run.mcap", ""):
+                with self.assertRaisesRegex(neritic.BadInput, "record: found .*; accepted: "), world.record(os.path.join(folder, name)):
+                    self.fail("the trial ran")
+        self.assertEqual(world.step, 0)
+        with self.assertRaises(neritic.BadInput), world.record("/proc/run"):
+            self.fail("the trial ran")
+
+    def test_the_blocks_own_exception_is_not_replaced_by_the_recordings(self):
+        world = neritic.open(MISSION, seed=1)
+        folder = tempfile.mkdtemp()
+        with self.assertRaises(ZeroDivisionError) as caught, world.record(folder + "/run"):
+            world.tick(4)
+            shutil.rmtree(folder)
+            1 / 0
+        self.assertIn("cannot be written", caught.exception.__notes__[0])
+        with tempfile.TemporaryDirectory() as folder:
+            with world.record(folder + "/run"):
+                world.tick(4)
+            self.assertEqual(sorted(os.listdir(folder)), ["run.csv", "run.mcap"])
+
     def test_everything_public_is_documented(self):
         for name in neritic.__all__:
             thing = getattr(neritic, name)
@@ -300,6 +367,48 @@ class Environments(unittest.TestCase):
                 ends.append(b"".join(a.tobytes() for a in obs.values()) + reward.tobytes())
             self.assertEqual(ends[0], ends[1], task)
             self.assertEqual(ends[0], ends[2], task)
+
+    def test_actions_have_the_exact_shape_and_are_finite_numbers(self):
+        env = neritic.vector("hover", 5)
+        fine = np.zeros((5, 8), np.float32)
+        env.step(fine.tolist())
+        env.step(np.asfortranarray(fine))
+        env.step(fine.astype(int))
+        wide = np.zeros((5, 8))
+        nan, large, infinite = fine.copy(), wide.copy(), fine.copy()
+        nan[3, 2], large[1, 0], infinite[0, 7] = np.nan, 1e300, -np.inf
+        for actions, words in ((np.zeros((8, 5)), "8 x 5 of float64"), (np.zeros(40), "found 40 of"), (np.zeros((5, 8, 1)), "5 x 8 x 1"),
+                               (fine.astype(object), "object"), (fine.astype(complex), "complex"), (fine.astype(str), "str"),
+                               ([[1], [1, 2]], "several lengths"), (None, "found one of object"), (nan, "nan in environment 3, action 2"),
+                               (large, "inf in environment 1, action 0"), (infinite, "-inf in environment 0, action 7")):
+            with self.subTest(words=words), self.assertRaisesRegex(neritic.BadInput, words + ".*; accepted: "):
+                env.step(actions)
+
+    def test_what_environments_do_not_understand_is_refused(self):
+        bad = {
+            "randomise: found": [{"randomise": r} for r in (None, 0, 3, "mass", ["mass"], {"colour": 1}, {3: 1})],
+            "randomise: mass: found": [{"randomise": {"mass": m}} for m in ("x", None, float("nan"), [1, 2])],
+            "num_envs: found .*; accepted: a whole number from 1 to 1048576": [{"num_envs": n} for n in (-1, 0, True, 2**21, 1.5)],
+            "step_s": [{"step_s": "x"}, {"step_s": float("inf")}],
+            "accepted: ": [{"substeps": "x"}, {"substeps": 0}, {"max_steps": 0}, {"threads": 1000}, {"method": 3}, {"copy": "x"},
+                           {"thrust_table": None}, {"control": []}],
+        }
+        for words, cases in bad.items():
+            for case in cases:
+                with self.subTest(case=case), self.assertRaisesRegex(neritic.BadInput, words):
+                    neritic.vector("hover", **case)
+        for randomise in (True, False, np.False_, {}, {"mass": np.float32(0.1)}):
+            neritic.vector("hover", np.int64(2), randomise=randomise)
+        env = neritic.vector("hover", 2)
+        with self.assertRaises(neritic.BadInput):
+            env.reset(options=3)
+        with self.assertRaises(neritic.BadInput):
+            env.reset(seed=[[1], [1, 2]])
+        env.reset(seed=np.array([3, 4]))
+        env.close()
+        for call in (lambda: env.step(np.zeros((2, 8))), env.reset, env.truth):
+            with self.assertRaisesRegex(neritic.BadInput, "closed"):
+                call()
 
     def test_episodes_end_and_begin_anew(self):
         for mode in ("next_step", "same_step"):

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Optional, Sequence, Union
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from .arguments import numbers, whole
+from .arguments import flag, numbers, rotations, shown, whole, word
 from .errors import BadInput
 from .observations import Message
 
@@ -15,10 +15,18 @@ if TYPE_CHECKING:
     from .world import World
 
 
-def _choice(name: str, what: str, word: str, words: Sequence[str]) -> int:
-    if word not in words:
-        raise BadInput(f"{name}: {what}: found {word!r}; accepted: {', '.join(words)}")
-    return list(words).index(word)
+MOST_TANKS = 4
+"""Of a diver (diver/gear.hpp)."""
+
+
+def _choice(name: str, what: str, choice: str, words: Sequence[str]) -> int:
+    if not isinstance(choice, str) or choice not in words:
+        raise BadInput(f"{name}: {what}: found {shown(choice)}; accepted: {', '.join(words)}")
+    return list(words).index(choice)
+
+
+def _joints(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    return rotations(f"{name}: joints", values, 15)
 
 
 class Agent:
@@ -34,8 +42,10 @@ class Agent:
         """Sends up to 64 bytes by sound with the next step, to one agent's modem or to all (None). The message
         arrives later or is lost: the other agent's receive() returns it, and readings of NAME/modem tell
         what became of it (event: MODEM_EVENTS)."""
-        if isinstance(data, str):
-            data = data.encode()
+        try:
+            data = data.encode() if isinstance(data, str) else bytes(memoryview(data))
+        except TypeError:
+            raise BadInput(f"{self.name}: send: found {shown(data)}; accepted: a text or bytes") from None
         number = 0
         if to is not None:
             number = self._world[to].modem
@@ -56,12 +66,14 @@ class Agent:
 
     def command(self, kind: str, values: ArrayLike, hold: float = 0.0) -> None:
         """A command by its name and numbers, as the methods below send it."""
+        kind = word(f"{self.name}: command", kind)
         self._world._core.command(self.name, kind, numbers(f"{self.name}: {kind}", values),
                                   float(numbers(f"{self.name}: {kind}: hold", hold, 1)[0]), self._world.source)
 
     def _joined(self, kind: str, hold: float, **parts: tuple[ArrayLike, int]) -> None:
-        """A command made of parts: each its values and how many they must be."""
-        self.command(kind, np.concatenate([numbers(f"{self.name}: {kind}: {part}", values, count)
+        """A command made of parts: each its values and how many they must be. An orientation is a rotation."""
+        self.command(kind, np.concatenate([rotations(f"{self.name}: {kind}: {part}", values, 1) if part == "orientation"
+                                           else numbers(f"{self.name}: {kind}: {part}", values, count)
                                            for part, (values, count) in parts.items()]), hold)
 
     def grip(self, choice: str) -> None:
@@ -126,12 +138,13 @@ class Diver(Agent):
     def jacket(self, inflate: bool = False, deflate: bool = False, dump: bool = False,
                hold: float = 0.0) -> None:
         """The jacket's buttons that are pressed from now on."""
-        self.command("buttons", [inflate, deflate, dump], hold)
+        pressed = {"inflate": inflate, "deflate": deflate, "dump": dump}
+        self.command("buttons", [flag(f"{self.name}: jacket: {name}", value) for name, value in pressed.items()], hold)
 
     def joints(self, rotations: ArrayLike, hold: float = 0.0) -> None:
         """15 rotations, parent from child, as quaternions x y z w: abdomen, thorax, head; left upper
         arm, forearm, hand; right ones; left upper leg, lower leg, foot; right ones."""
-        self.command("joints", rotations, hold)
+        self.command("joints", _joints(self.name, rotations), hold)
 
     def head(self, orientation: Sequence[float], position: Optional[Sequence[float]] = None,
              hold: float = 0.0) -> None:
@@ -142,7 +155,7 @@ class Diver(Agent):
 
     def gas(self, tank: int) -> None:
         """Breathe from that tank; 0 is the first."""
-        self.command("gas", [whole(f"{self.name}: gas", tank, 0, 1000)])
+        self.command("gas", [whole(f"{self.name}: gas", tank, 0, MOST_TANKS - 1)])
 
     def regulator(self, supply: str = "auto", flow: str = "auto") -> None:
         """supply: the diver breathes from "own" tanks, the "donor"'s, or the donor's once the own ones are empty
@@ -166,4 +179,4 @@ class TrackedObject(Agent):
 
     def joints(self, rotations: ArrayLike, hold: float = 0.0) -> None:
         """The limbs of a diver who swims elsewhere, as in Diver.joints(). The object has a diver's model."""
-        self.command("joints", rotations, hold)
+        self.command("joints", _joints(self.name, rotations), hold)

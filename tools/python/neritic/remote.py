@@ -17,11 +17,14 @@ from typing import Any, Mapping, Optional, Union
 import numpy as np
 from numpy.typing import NDArray
 
+from .arguments import number, path, shown, whole, word
 from .errors import BadInput, Error
 from .observations import Truth
-from .world import World
+from .world import MOST_STEPS, World
 
 _PROTOCOL = 1
+# Of one request (testbed/server/request.hpp).
+_STEPS, _WAIT_S = 100_000, 60.0
 _ROW = struct.Struct("<IIQqq")
 Row = tuple[tuple[int, int, int, int, int], NDArray[np.float64]]
 
@@ -88,11 +91,16 @@ def _end(socket: Any, context: Any) -> None:
     context.term()
 
 
-def _key(file: Union[str, os.PathLike[str]], word: str) -> bytes:
-    with open(file, encoding="ascii", errors="replace") as lines:
-        found = re.search(rf"^{word} (\S{{40}})$", lines.read(), re.MULTILINE)
+def _key(file: Union[str, os.PathLike[str]], sort: str) -> bytes:
+    name = path("connect: key", file)
+    try:
+        with open(name, encoding="ascii", errors="replace") as lines:
+            found = re.search(rf"^{sort} (\S{{40}})$", lines.read(), re.MULTILINE)
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{name}: found a file that cannot be read ({getattr(error, 'strerror', None) or error}); "
+                       "accepted: a key file of neritic keys") from None
     if not found:
-        raise BadInput(f"{os.fspath(file)}: found no line \"{word} KEY\"; accepted: a key file of neritic keys")
+        raise BadInput(f"{name}: found no line \"{sort} KEY\"; accepted: a key file of neritic keys")
     return found[1].encode()
 
 
@@ -107,8 +115,9 @@ class Core:
         except ImportError as missing:
             raise Error(f"connect: found no {missing.name}; accepted: Debian's python3-zmq and "
                         "python3-msgpack") from None
-        if not re.fullmatch(r"tcp://[\w.\-]+:\d{1,5}", address):
-            raise BadInput(f"connect: found '{address}'; accepted: tcp://ADDRESS:PORT")
+        if not isinstance(address, str) or not re.fullmatch(r"tcp://[\w.\-]+:\d{1,5}", address) or \
+                not 0 < int(address.rpartition(":")[2]) < 65536:
+            raise BadInput(f"connect: found {shown(address)}; accepted: tcp://ADDRESS:PORT")
         if (key is None) != (server_key is None):
             raise BadInput("connect: found one key; accepted: key and server_key, or neither")
         self._msgpack, self._zmq, self._address, self._patience = msgpack, zmq, address, patience
@@ -140,7 +149,8 @@ class Core:
         self._newest: list[Row] = [((i, 0, 0, 0, 0), np.zeros(0)) for i in range(len(self.streams))]
         self._arrived: list[Row] = []
         self._images: list[Image] = []
-        self.step, self.time, self._hash = hello["step"], hello["time_ns"] * 1e-9, None
+        self.step, self.time = hello["step"], hello["time_ns"] * 1e-9
+        self._hash, self._hash_step = 0, -1
         self.lost_readings = self.lost_images = self._lost_here = 0
         self.clock = ""
         self._share(hello.get("shared_memory"))
@@ -211,14 +221,16 @@ class Core:
         self.lost_readings = answer.get("lost_readings", self.lost_readings)
         self.lost_images = answer.get("lost_images", 0) + self._lost_here
         self.step, self.time = answer["step"], answer["time_ns"] * 1e-9
-        self._hash, self.clock = answer.get("hash", self._hash), answer["clock"]
+        self.clock = answer["clock"]
+        if "hash" in answer:
+            self._hash, self._hash_step = answer["hash"], self.step
 
     # A world's interface.
 
     @property
     def hash(self) -> int:
-        if self._hash is None:
-            raise BadInput("hash: found no tick yet; accepted: after a tick")
+        if self._hash_step != self.step:
+            self._take(*self._call("wait", steps=1, wait_s=0.0))  # answered at once, with the hash
         return self._hash
 
     def stream(self, name: str) -> int:
@@ -228,8 +240,12 @@ class Core:
             raise BadInput(f"stream: found '{name}'; accepted: {', '.join(self._places)}") from None
 
     def tick(self, steps: int) -> Readings:
-        lasts = 60.0 + steps * self.step_s
-        self._take(*self._call("tick", lasts, steps=steps))
+        if steps == 0:
+            return self.newest()
+        while steps > 0:
+            part = min(steps, _STEPS)
+            self._take(*self._call("tick", 60.0 + part * self.step_s, steps=part))
+            steps -= part
         return Readings(list(self._newest), self.step, self.time)
 
     def newest(self) -> Readings:
@@ -292,9 +308,10 @@ class Core:
 
     def restore(self, state: bytes) -> None:
         self._hold()
+        answer = self._call("restore", 10.0, state)
         self._arrived, self._images = [], []
         self._newest = [((i, 0, 0, 0, 0), np.zeros(0)) for i in range(len(self.streams))]
-        self._take(*self._call("restore", 10.0, state))
+        self._take(*answer)
 
     def record(self, name: str) -> None:
         self._call("record", name=name)
@@ -310,7 +327,13 @@ class Core:
         self._call("clock", take=take)
 
     def wait(self, steps: int, most: float) -> None:
-        self._take(*self._call("wait", most, steps=steps, wait_s=most))
+        self.newest()
+        until, end = time.monotonic() + most, self.step + steps
+        while self.step < end:
+            left_s = min(max(until - time.monotonic(), 0.0), _WAIT_S)
+            self._take(*self._call("wait", left_s, steps=min(end - self.step, _STEPS), wait_s=left_s))
+            if time.monotonic() >= until:
+                return
 
     def counts(self) -> dict[str, int]:
         return self._call("counts")[0]["counts"]
@@ -345,9 +368,12 @@ class RemoteWorld(World):
         """Gives the clock back, so that another client may tick."""
         self._core.take_clock(False)
 
+    def _check_record(self, name: str) -> None:
+        """The server does."""
+
     def wait(self, steps: int = 1, most: float = 60.0) -> None:
         """Waits until `steps` steps of others are done, at most `most` seconds."""
-        self._core.wait(steps, most)
+        self._core.wait(whole("wait: steps", steps, 0, MOST_STEPS), number("wait: most", most, 0.0))
 
     def poses(self) -> dict[str, Truth]:
         """The true motion of every agent, in one call; without the current, forces and contacts."""
@@ -369,4 +395,4 @@ def connect(address: str, *, name: str = World.source, key: Optional[str] = None
     name: under which commands enter recordings (the key's name with keys). key, server_key: files
     NAME.secret and server.public of `neritic keys`. patience: seconds until a server that does not
     answer is an error."""
-    return RemoteWorld(Core(address, name, key, server_key, patience))
+    return RemoteWorld(Core(address, word("connect: name", name), key, server_key, number("connect: patience", patience, 0.0)))

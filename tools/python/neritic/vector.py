@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core, spaces
-from .arguments import whole
+from .arguments import flag, number, path, shown, whole, word
 from .errors import BadInput
 
+MOST_ENVS = 2**20
 TASKS = ("hover", "track", "dock", "follow", "shark")
 RANDOMISED = {
     "mass": 0.05,
@@ -85,9 +86,11 @@ class VectorEnv:
         """All environments begin an episode: observations and an empty info. seed: one for all, or one
         each; None: the next of a row. The same seeds and actions give the same bits, on any number of
         threads."""
+        self._check_open()
         if options:
-            raise BadInput(f"options: found {sorted(options)}; accepted: none")
-        seeds = [self._next_seed] if seed is None else [seed] if np.ndim(seed) == 0 else list(seed)
+            raise BadInput(f"options: found {shown(options)}; accepted: none")
+        rows = hasattr(seed, "__iter__") and not isinstance(seed, (str, bytes)) and getattr(seed, "ndim", 1) != 0
+        seeds = [self._next_seed] if seed is None else list(seed) if rows else [seed]
         if not seeds:
             raise BadInput("seed: found none; accepted: one for all, or one each")
         seeds = [whole("seed", one, 0, 2**64 - 1) for one in seeds]
@@ -103,7 +106,7 @@ class VectorEnv:
 
         An episode that ended begins anew in the next step, which ignores its action and rewards 0. With
         autoreset="same_step" it begins anew in the same step, and info has "final_obs" and "_final_obs"."""
-        self._core.step(actions)
+        self._core.step(self._checked(actions))
         info: dict[str, Any] = {}
         if self._same_step:
             over = self._terminated | self._truncated
@@ -117,6 +120,7 @@ class VectorEnv:
     def truth(self) -> NDArray[np.float64]:
         """The truth, without noise, [num_envs, 13]: place (east, north, up), rotation (world from body, x y
         z w), velocity over ground and angular velocity (forward, left, up)."""
+        self._check_open()
         return self._core.truth()
 
     @property
@@ -125,11 +129,32 @@ class VectorEnv:
         return self._core.threads
 
     def close(self) -> None:
-        """Nothing is left open."""
+        """Ends it: what follows is refused."""
         self.closed = True
 
     def __repr__(self) -> str:
         return f"<{self.num_envs} environments '{self.task}'>"
+
+    def _check_open(self) -> None:
+        if self.closed:
+            raise BadInput("found environments that are closed; accepted: neritic.vector()")
+
+    def _checked(self, actions: ArrayLike) -> NDArray[np.float32]:
+        self._check_open()
+        shape = self.action_space.shape
+        try:
+            array = np.asarray(actions)
+        except ValueError:
+            raise BadInput(f"actions: found rows of several lengths; accepted: {shape[0]} x {shape[1]} numbers") from None
+        if array.shape != shape or array.dtype.kind not in "fiub":
+            raise BadInput(f"actions: found {' x '.join(map(str, array.shape)) or 'one'} of {array.dtype.name}; "
+                           f"accepted: {shape[0]} x {shape[1]} numbers")
+        with np.errstate(over="ignore"):
+            array = array.astype(np.float32, order="C", copy=False)
+        if not np.isfinite(array).all():
+            at, which = np.argwhere(~np.isfinite(array))[0]
+            raise BadInput(f"actions: found {array[at, which]} in environment {at}, action {which}; accepted: finite numbers")
+        return array
 
     def _given(self, arrays: Mapping[str, NDArray[np.float32]]) -> dict[str, NDArray[np.float32]]:
         return {name: array.copy() if self._copy else array for name, array in arrays.items()}
@@ -157,13 +182,24 @@ def vector(task: str, num_envs: int = 1, *, vehicle: Union[None, str, os.PathLik
                                   ("autoreset", autoreset, ("next_step", "same_step"))):
         if found not in accepted:
             raise BadInput(f"{name}: found '{found}'; accepted: {', '.join(accepted)}")
-    for name, number in (("num_envs", num_envs), ("max_steps", max_steps), ("threads", threads)):
-        whole(name, number, 0, 2**31 - 1)
-    random = None if randomise is False else {**RANDOMISED, **(randomise if isinstance(randomise, Mapping) else {})}
-    path = os.fspath(vehicle) if vehicle is not None else str(_vehicle_file())
-    core = _core.VectorEnv(task, num_envs, path, step_s, max_steps, method, substeps, thrust_table, random,
-                           control == "wrench", autoreset == "same_step", threads)
-    return VectorEnv(task, num_envs, core, max_steps, step_s, autoreset, copy)
+    num_envs, max_steps = whole("num_envs", num_envs, 1, MOST_ENVS), whole("max_steps", max_steps, 1, 2**31 - 1)
+    file = path("vehicle", vehicle) if vehicle is not None else str(_vehicle_file())
+    core = _core.VectorEnv(word("task", task), num_envs, file, number("step_s", step_s), max_steps, word("method", method),
+                           whole("substeps", substeps, 1, 1000), flag("thrust_table", thrust_table), _random(randomise),
+                           control == "wrench", autoreset == "same_step", whole("threads", threads, 0, 256))
+    return VectorEnv(task, num_envs, core, max_steps, step_s, autoreset, flag("copy", copy))
+
+
+def _random(randomise: Any) -> Optional[dict[str, float]]:
+    """Of True, False or a dict; None: nothing differs."""
+    if isinstance(randomise, Mapping):
+        for name in randomise:
+            if name not in RANDOMISED:
+                raise BadInput(f"randomise: found {shown(name)}; accepted: {', '.join(RANDOMISED)}")
+        return {**RANDOMISED, **{name: number(f"randomise: {name}", value) for name, value in randomise.items()}}
+    if not isinstance(randomise, (bool, np.bool_)):
+        raise BadInput(f"randomise: found {shown(randomise)}; accepted: True, False, or a dict of {', '.join(RANDOMISED)}")
+    return dict(RANDOMISED) if randomise else None
 
 
 def _vehicle_file() -> Path:

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import asyncio
 import os
+import tempfile
 from collections import deque
 from contextlib import contextmanager
 from typing import Any, AsyncIterator, Callable, Iterator, Mapping, Optional, Union
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .agents import Agent, Diver, TrackedObject, Vehicle
-from .arguments import numbers, whole
-from .errors import BadInput
+from .arguments import flag, number, numbers, path as path_of, shown, whole, word
+from .errors import BadInput, Error
 from .observations import MODEM_EVENTS, Image, Message, Observations, Reading, Stream, Truth, offsets_of
 
 MOST_STEPS = 100_000_000
@@ -98,12 +99,12 @@ class World:
         """The agent of that name."""
         try:
             return self._agents[name]
-        except KeyError:
-            raise BadInput(f"agent: found '{name}'; accepted: {', '.join(self._agents)}") from None
+        except (KeyError, TypeError):
+            raise BadInput(f"agent: found {shown(name)}; accepted: {', '.join(self._agents)}") from None
 
     def truth(self, agent: str) -> Truth:
         """The true motion of the agent, apart from what is measured of it."""
-        return Truth(**{"time": self._core.time, **self._core.truth(agent)})
+        return Truth(**{"time": self._core.time, **self._core.truth(word("truth: agent", agent))})
 
     # Time.
 
@@ -118,10 +119,13 @@ class World:
         """Returns what has arrived so far, without a step."""
         return Observations(self, self._core.newest(), self._images)
 
-    async def ticks(self, steps: int = 1, count: Optional[int] = None) -> AsyncIterator[Observations]:
+    def ticks(self, steps: int = 1, count: Optional[int] = None) -> AsyncIterator[Observations]:
         """Ticks of this number of steps, as an asynchronous iterator. Each runs on another thread, so that the
         event loop continues. count: the number of ticks; None: without end."""
-        whole("ticks: steps", steps, 0, MOST_STEPS)
+        return self._ticks(whole("ticks: steps", steps, 0, MOST_STEPS),
+                           None if count is None else whole("ticks: count", count, 0, 2**63 - 1))
+
+    async def _ticks(self, steps: int, count: Optional[int]) -> AsyncIterator[Observations]:
         done = 0
         while count is None or done < count:
             of = await asyncio.get_running_loop().run_in_executor(None, self._core.tick, steps)
@@ -132,23 +136,26 @@ class World:
     def on(self, stream: str, call: Callable[[Any], None]) -> None:
         """Calls `call(reading)` after each tick, for every reading (or image) of the stream that arrived
         in it, in the order of arrival. Images must be wanted with keep=True."""
-        place = self._core.stream(stream)
+        place = self._place(stream)
+        if not callable(call):
+            raise BadInput(f"on: {stream}: found {shown(call)}; accepted: a function of one reading")
         if self._streams[place].sort != "image":
             self._core.keep(place, True)
         self._callbacks.setdefault(stream, []).append(call)
 
     def off(self, stream: str) -> None:
         """Ends the callbacks of a stream."""
+        place = self._place(stream)
         self._callbacks.pop(stream, None)
-        place = self._core.stream(stream)
         if self._streams[place].sort != "image" and stream not in self._mail:
             self._core.keep(place, False)
 
     def link(self, stream: str, delay: float = 0.0, jitter: float = 0.0, loss: float = 0.0) -> None:
         """Readings of the stream arrive `delay` seconds late plus up to `jitter` (evenly distributed), and a share
         `loss` never. The measurements and their stamps do not change."""
+        place = self._place(stream)
         row = numbers(f"link: {stream}: delay, jitter, loss", (delay, jitter, loss), 3)
-        self._core.set_link(self._core.stream(stream), *row.tolist())
+        self._core.set_link(place, *row.tolist())
 
     # Images.
 
@@ -156,15 +163,15 @@ class World:
         """Asks for images of these streams from the next tick on, "eye/color" or "sonar/echoes", at `rate` Hz
         or the sensor's own rate (0). The first call makes a Vulkan device. keep: callbacks get every
         image, not the newest of each tick alone."""
-        rate = float(numbers("images: rate", rate, 1)[0])
+        rate, keep = float(numbers("images: rate", rate, 1)[0]), flag("images: keep", keep)
         for stream in streams:
-            self._core.want_image(self._core.stream(stream), rate, keep)
+            self._core.want_image(self._place(stream), rate, keep)
             self._senses = True
 
     def no_images(self, *streams: str) -> None:
         """Ends the images of these streams."""
         for stream in streams:
-            self._core.drop_image(self._core.stream(stream))
+            self._core.drop_image(self._place(stream))
         self._images = {name: image for name, image in self._images.items() if name not in streams}
 
     # State.
@@ -173,8 +180,12 @@ class World:
         """The whole state as bytes, for restore() or `neritic dive --restore`."""
         return self._core.save()
 
-    def restore(self, state: bytes) -> None:
+    def restore(self, state: Union[bytes, bytearray, memoryview, NDArray[np.uint8]]) -> None:
         """Continues from a saved state of this scene. Readings on their way are dropped; commands end."""
+        try:
+            state = bytes(memoryview(state))
+        except (TypeError, BufferError):
+            raise BadInput(f"restore: found {shown(state)}; accepted: bytes that save() gave") from None
         self._core.restore(state)
         self._images = {}
         for mail in self._mail.values():
@@ -184,18 +195,46 @@ class World:
     def record(self, path: Union[str, os.PathLike[str]]) -> Iterator[None]:
         """Records what follows: `with world.record("out/run"): ...` writes out/run.mcap, which
         `neritic dive --replay` repeats and ROS 2 tools read, and out/run.csv."""
-        self._core.record(os.fspath(path))
+        name = path_of("record", path)
+        self._check_record(name)
+        self._core.record(name)
         try:
             yield
-        finally:
-            self._core.stop_recording()
+        except BaseException as error:
+            try:
+                self._core.stop_recording()
+            except Error as failed:  # beside the block's own exception, which is what ended it
+                error.add_note(f"the recording: {failed}")
+            raise
+        self._core.stop_recording()
+
+    def _check_record(self, name: str) -> None:
+        """Refuses a file that could not be written, before anything runs."""
+        folder, stem = os.path.split(name)
+        if not stem:
+            raise BadInput(f"record: found '{name}'; accepted: a file's name")
+        try:
+            with tempfile.TemporaryFile(dir=folder or "."):
+                pass
+        except OSError as error:
+            raise BadInput(f"record: found folder '{folder or '.'}' ({error.strerror}); accepted: one that can be written") from None
+        for end in (".mcap", ".csv"):
+            if os.path.isdir(name.removesuffix(".mcap") + end):
+                raise BadInput(f"record: found a folder {name.removesuffix('.mcap')}{end}; accepted: a file's name")
 
     def inject(self, stream: str, values: ArrayLike, source: str, stamp: Optional[float] = None) -> None:
         """Sends a sample into a stream of inputs, as the device `source` would. It acts if that source has the
         authority. stamp: when it was measured; None: now."""
+        word("inject: stream", stream)
+        source = word(f"inject: {stream}: source", source)
         if stamp is not None:
-            stamp = float(numbers(f"inject: {stream}: stamp", stamp, 1)[0])
-        self._core.inject(stream, numbers(f"inject: {stream}", values), source, stamp)
+            stamp = number(f"inject: {stream}: stamp", stamp, -1e9, 1e9)
+        try:
+            self._core.inject(stream, numbers(f"inject: {stream}", values), source, stamp)
+        except BadInput:
+            if stamp is None or stamp <= self.observe().time:
+                raise
+            raise BadInput(f"inject: {stream}: stamp: found {stamp:g} s; accepted: up to now, {self.time:g} s") from None
 
     def close(self) -> None:
         """Ends the world and its recording."""
@@ -213,6 +252,9 @@ class World:
         return f"<world '{self.title}' at {self.time:.4f} s: {', '.join(self._agents)}>"
 
     # Inside.
+
+    def _place(self, stream: str) -> int:
+        return self._core.stream(word("stream", stream))
 
     def _take_images(self) -> None:
         taken = self._core.take_images() if self._senses else []
@@ -262,5 +304,5 @@ def open(scene: Union[str, os.PathLike[str]], seed: Optional[int] = None, *, thr
     device: a part of the name of the Vulkan device for images. validation: checks Vulkan calls."""
     if seed is not None:
         seed = whole("seed", seed, 0, 2**64 - 1)
-    return World(_core.World(os.fspath(scene), seed, real_time, whole("threads", threads, 0, 2**32 - 1), device,
-                             validation))
+    return World(_core.World(path_of("scene", scene), seed, flag("real_time", real_time), whole("threads", threads, 0, 2**32 - 1),
+                             word("device", device), flag("validation", validation)))
