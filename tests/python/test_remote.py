@@ -6,6 +6,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import numpy as np
 
@@ -78,6 +79,59 @@ class Remote(unittest.TestCase):
             self.assertEqual(there.hash, here.hash)
             with self.assertRaisesRegex(neritic.BadInput, "agent"):
                 there._core.truth("fish")
+
+    def test_limits_and_errors_are_those_of_the_process(self):
+        with Served() as address, neritic.open(SCENE, seed=3) as here, neritic.connect(address) as there:
+            self.assertEqual(here.hash, there.hash)  # before a first tick
+            self.same(here.tick(0), there.tick(0))
+            self.assertEqual(there.step, 0)
+            with unittest.mock.patch.object(neritic.remote, "_STEPS", 25):  # in parts, with all that arrives
+                heard = ([], [])
+                for world, list_ in zip((here, there), heard):
+                    world.on("diver/motion", lambda reading, to=list_: to.append(reading.sequence))
+                self.same(here.tick(130), there.tick(130))
+                self.assertEqual(*heard)
+            self.assertEqual(here.hash, there.hash)
+            for world in (here, there):
+                before = list(world.observe())
+                self.assertGreater(len(before), 1)
+                with self.assertRaises(neritic.BadInput):
+                    world.restore(b"xx")
+                self.assertEqual(list(world.observe()), before)
+                with self.assertRaisesRegex(neritic.BadInput, "stamp: found 99 s; accepted: up to now"):
+                    world.inject("diver/buttons", [0, 0, 0], "suit", stamp=99.0)
+            there.wait(np.int64(1), np.float32(0.01))
+            there.wait(0)
+            for call in (lambda: there.wait(-1), lambda: there.wait("x"), lambda: there.wait(1, -1.0), lambda: there.tick("x"),
+                         lambda: neritic.connect(address, key="none.secret", server_key="none.public"),
+                         lambda: neritic.connect(address, key=3, server_key=3), lambda: neritic.connect(3),
+                         lambda: neritic.connect(address, patience="x"), lambda: neritic.connect("tcp://127.0.0.1:99999")):
+                with self.assertRaisesRegex(neritic.BadInput, "found .*; accepted: ") as caught:
+                    call()
+                self.assertNotIn("\n", str(caught.exception))
+
+    def test_a_wait_ends_with_the_steps_of_others(self):
+        with Served("--realtime") as address, neritic.connect(address) as there, \
+                unittest.mock.patch.object(neritic.remote, "_STEPS", 10), unittest.mock.patch.object(neritic.remote, "_WAIT_S", 0.01):
+            before = there.step
+            there.wait(30, 20.0)
+            self.assertGreaterEqual(there.step, before + 30)
+
+    def test_joining_fails_in_one_line(self):
+        def join(*words):
+            done = subprocess.run(["/usr/bin/python3", "-m", "neritic.join", *words], capture_output=True, text=True, timeout=60)
+            self.assertEqual(done.stderr.count("\n"), 1 if done.returncode else 0, done.stderr)
+            return done.returncode, done.stderr
+
+        with Served() as address:
+            for words, status, line in (((address, "none.toml"), 2, "no such file"), (("there", SCENE), 2, "accepted: tcp://ADDRESS:PORT"),
+                                        ((address, SCENE, "--as", "fish"), 2, "found 'fish'"),
+                                        ((address, SCENE, "--as", "rov"), 2, "no object with a pose input"),
+                                        ((address, SCENE, "--seconds", "nan"), 2, "--seconds"), ((address,), 2, "scene"),
+                                        (("tcp://127.0.0.1:1", SCENE), 1, "no answer"), ((address, SCENE, "--seconds", "0.1"), 0, "")):
+                found = join(*words)
+                self.assertEqual(found[0], status, found)
+                self.assertIn(line, found[1])
 
     def test_messages_by_sound_are_those_of_the_process(self):
         talk = str(ROOT / "assets/scenes/talk.toml")

@@ -12,13 +12,16 @@ limbs: a suit here moves them there. Messages by modem stay in the scene where t
 from __future__ import annotations
 
 import argparse
+import sys
 import time
-from typing import Optional
+from typing import Mapping, NoReturn, Optional
 
 import numpy as np
 
 from .remote import RemoteWorld, connect
-from .agents import Diver, TrackedObject
+from .agents import Agent, Diver, TrackedObject
+from .arguments import number
+from .errors import BadInput, Error
 from .observations import Truth
 from .world import World, open
 
@@ -71,25 +74,48 @@ def join(here: World, there: RemoteWorld, own: Optional[str], seconds: Optional[
         here.tick(steps)
 
 
-def main() -> None:
-    """The command line."""
-    parser = argparse.ArgumentParser(prog="neritic.join", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+def _check_own(own: str, here: Mapping[str, Agent], there: Mapping[str, Agent]) -> None:
+    """Refuses a participant that this side does not have or that the server's does not take a pose of."""
+    if own not in here:
+        raise BadInput(f"--as: found '{own}'; accepted, of the scene here: {', '.join(here) or 'none'}")
+    if not isinstance(there.get(own), TrackedObject):
+        fit = [name for name, agent in there.items() if name in here and isinstance(agent, TrackedObject)]
+        raise BadInput(f"--as: found '{own}', which is no object with a pose input in the server's scene; accepted: "
+                       f"{', '.join(fit) or 'none: no such object is a participant here'}")
+
+
+class _Flags(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        raise BadInput(f"{message}; accepted: see --help")
+
+
+def main() -> int:
+    """The command line. Exit status: 0 done, 1 it could not be done, 2 bad input."""
+    parser = _Flags(prog="neritic.join", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("server", help="tcp://ADDRESS:PORT")
     parser.add_argument("scene", help="the scene here")
     parser.add_argument("--as", dest="own", help="the participant that is here (default: none)")
     parser.add_argument("--key", help="NAME.secret of neritic keys")
     parser.add_argument("--server-key", help="server.public")
     parser.add_argument("--seconds", type=float, help="ends after this time")
-    flags = parser.parse_args()
-    name = flags.own or World.source
-    with open(flags.scene, real_time=True) as here, \
-            connect(flags.server, name=name, key=flags.key, server_key=flags.server_key) as there:
-        try:
-            join(here, there, flags.own, flags.seconds)
-        except KeyboardInterrupt:
-            pass
+    try:
+        flags = parser.parse_args()
+        seconds = None if flags.seconds is None else number("--seconds", flags.seconds, 0.0)
+        with open(flags.scene, real_time=True) as here, \
+                connect(flags.server, name=flags.own or World.source, key=flags.key, server_key=flags.server_key) as there:
+            if flags.own is not None:
+                _check_own(flags.own, here.agents, there.agents)
+            join(here, there, flags.own, seconds)
+    except BadInput as error:
+        print(f"neritic.join: {error}", file=sys.stderr)
+        return 2
+    except (Error, OSError) as error:
+        print(f"neritic.join: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        pass
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())
