@@ -1,6 +1,7 @@
 """The parts of tools/experiment that need no program: orders, scores, studies, intervals, power. Exit 77: skipped."""
 import math
 import os
+import pathlib
 import re
 import signal
 import subprocess
@@ -189,6 +190,29 @@ class Runs(unittest.TestCase):
                 scenario.Scenario(path, {"echo_sounder": echo_sounder}, sets=[text])
 
 
+class Measures(unittest.TestCase):
+    """Of a task, by its formulas."""
+
+    def test_what_has_no_value_has_a_cause(self):
+        import formulas
+        import task
+
+        def measure(name, text, stage=None):
+            return {"name": name, "of": formulas.Formula("", text, [], ["x"]), "statistic": "max", "stage": stage}
+        plan = SimpleNamespace(stop=None, seconds=1.0, stages=[{"name": n, "until": formulas.Formula("", "x > 5", [], ["x"]), "held_s": 0, "at_most_s": 1}
+                                                               for n in ("one", "two")],
+                               measures=[measure("by_zero", "1 / (x - x)"), measure("late", "x", "two"), measure("root", "(0 - x) ** 0.5"),
+                                         measure("large", "10.0 ** (400 * x)"), measure("none", "0 ** (0 - x)"), measure("fine", "x / (x > 1)")])
+        course = task._Course(plan)
+        for x in (1.0, 2.0):
+            course.see(task.Moment(None, {}, {"x": x}), x / 10)
+        measures = course.measures(0.1)
+        self.assertEqual(measures["fine"], 2.0)
+        self.assertEqual(measures["absent"]["by_zero"], "1 / (x - x) was no number at any moment, as where it divides by zero")
+        self.assertEqual(measures["absent"]["late"], "stage two was not reached")
+        self.assertEqual(sorted(measures["absent"]), ["by_zero", "large", "late", "none", "root"])
+
+
 class Questionnaires(unittest.TestCase):
     def test_each_block_stands_once_at_each_place_and_after_each_other(self):
         for n in range(1, 9):
@@ -278,7 +302,7 @@ class Study(unittest.TestCase):
             study = [sys.executable, "-B", os.path.join(TOOLS, "study.py"), "--program", "none", "mark", self.folder, "P01", "seen"]
             self.write("program", f"""#!{sys.executable}
 import json, socket, subprocess, sys
-port, out = int(sys.argv[1]), sys.argv[2]
+port, out = int(sys.argv[2]), sys.argv[3]
 with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listens:
     listens.bind(("127.0.0.1", port))
     listens.settimeout(10)
@@ -292,7 +316,7 @@ with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listens:
 json.dump(heard, open(out, "w"))
 """)
             os.chmod(program, 0o755)
-            self.write("plan.toml", self.PLAN + 'command = ["{markers}", "{folder}/heard"]\n')
+            self.write("plan.toml", self.PLAN + 'command = ["dive", "{markers}", "{folder}/heard"]\n')
             self.study("begin", "--plan", os.path.join(self.scratch, "plan.toml"))
             self.study("enrol", answers="yes\n")
             self.write("answers", "\n" + "50\n" * 6 + "\n")
@@ -314,6 +338,29 @@ json.dump(heard, open(out, "w"))
             self.assertEqual(self.study(*begin)[0], 2)
             self.write("plan.toml", self.PLAN + 'command = ["dive", "--record", "{record}.mcap", "--log={folder}/log.csv"]\n')
             self.assertEqual(self.study(*begin)[0], 0)
+
+    def test_a_block_runs_a_command_of_the_program_alone(self):
+        with tempfile.TemporaryDirectory() as self.scratch:
+            self.folder = os.path.join(self.scratch, "study")
+            for command in ('["rm", "-rf", "/"]', '["-q", "rm"]', '["-q"]', '["{folder}/mine"]'):
+                self.write("plan.toml", self.PLAN + f"command = {command}\n")
+                status, text = self.study("begin", "--plan", os.path.join(self.scratch, "plan.toml"))
+                self.assertEqual((status, text.count("\n")), (2, 1), text)
+                self.assertIn("accepted, as the first word: render, ", text)
+            told = "".join(f.read_text() for f in pathlib.Path(TOOLS, "..", "neritic", "command_line").glob("*.cpp"))
+            import study
+            self.assertEqual(sorted(study.COMMANDS), sorted(re.findall(r'app\.add_subcommand\(\s*"(\w+)"', told)))
+
+    def test_a_withdrawal_that_is_not_confirmed_erases_nothing_and_says_so(self):
+        with tempfile.TemporaryDirectory() as self.scratch:
+            self.folder = os.path.join(self.scratch, "study")
+            self.write("plan.toml", self.PLAN)
+            self.study("begin", "--plan", os.path.join(self.scratch, "plan.toml"))
+            self.study("enrol", answers="yes\n")
+            status, text = self.study("withdraw", "P01", answers="no\n")
+            self.assertEqual(status, 1, text)
+            self.assertIn("P01 was not typed; nothing is erased", text)
+            self.assertTrue(os.path.exists(os.path.join(self.folder, "participants", "P01")))
 
     def test_an_enrolment_that_was_cut_short_gives_its_pseudonym_to_nobody(self):
         with tempfile.TemporaryDirectory() as self.scratch:

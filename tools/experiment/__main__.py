@@ -109,6 +109,8 @@ def tell(told, out):
     for condition in told["conditions"]:
         for cause, n in condition["failures"].items():
             print(f"  {n} runs failed ({report.words(condition['condition'])}): {cause}")
+        for why, n in condition["absent"].items():
+            print(f"  {n} runs gave no value ({report.words(condition['condition'])}): {why}")
 
 
 def main():

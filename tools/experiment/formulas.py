@@ -12,9 +12,18 @@ import numpy as np
 from scenario import Refused
 
 _BINARY = {ast.Add: lambda a, b: a + b, ast.Sub: lambda a, b: a - b, ast.Mult: lambda a, b: a * b,
-           ast.Div: lambda a, b: a / b if b else math.nan, ast.Pow: lambda a, b: a ** b}
+           ast.Div: lambda a, b: a / b if b else math.nan, ast.Pow: lambda a, b: _power(a, b)}
 _COMPARE = {ast.Lt: lambda a, b: a < b, ast.LtE: lambda a, b: a <= b, ast.Gt: lambda a, b: a > b,
             ast.GtE: lambda a, b: a >= b, ast.Eq: lambda a, b: a == b, ast.NotEq: lambda a, b: a != b}
+
+
+def _power(a, b):
+    """NaN where no real number is the power, as where something is divided by zero."""
+    try:
+        value = a ** b
+    except (ZeroDivisionError, OverflowError):
+        return math.nan
+    return math.nan if isinstance(value, complex) else value
 
 
 def _facing(m, a, b):

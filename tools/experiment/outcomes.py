@@ -23,7 +23,7 @@ KNOBS = [
     ("delay_s", [0.0, 0.1, 0.2, 0.5, 1.0], [], "delay of the detector's word, s"),
     ("navigation", ["truth", "measured"], [], "the ROV flies by"),
     ("crop_px", [16, 24, 32, 48, 64], LOOKS, "side of the gaze crops, pixels"),
-    ("detector", ["assumed", "small", "shipped"], LOOKS[1:], "detector: none looks; 65 000 or 320 000 weights"),
+    ("detector", ["assumed", "small", "shipped"], LOOKS[1:], "network that looks: none, small, large"),
     ("sonar_quality", ["draft", "standard", "reference"], ['shark_known_by="sonar"'], "quality of the sonar that knows the shark"),
 ]
 RUNS = 30
@@ -116,5 +116,5 @@ def _figure(rows, style):
             ax.set_ylabel("time to block, s")
         style.title(ax, words[knob], 8.5)
     width, height = fig.get_size_inches() * style.DPI
-    fig.text(24 / width, 1 - 18 / height, "Median and 95 % interval of the time to block; above, the share that blocked within 3 s", size=9)
+    fig.text(24 / width, 1 - 18 / height, "Median and 95 % interval of the time to block, of the runs that blocked; above, the share that blocked within 3 s", size=9)
     return fig

@@ -97,6 +97,7 @@ def _condition_table(scenario, condition):
                     f"<td>{m['n']} of {condition['runs']}</td></tr>")
     failures = "".join(f"<p class=\"no\">{n} of {condition['runs']} runs: {html.escape(cause)}</p>"
                        for cause, n in condition["failures"].items())
+    failures += "".join(f"<p>{n} of {condition['runs']} runs gave no {html.escape(why)}</p>" for why, n in condition["absent"].items())
     return f"<h3>{html.escape(words(condition['condition']))}</h3>{failures}<table>{''.join(rows)}</table>"
 
 

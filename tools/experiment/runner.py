@@ -38,11 +38,11 @@ def _stop(*_):
 def _one(do, run, program, folder, out=""):
     """One run. Its failure is a result, not the end of the others."""
     begun, worked = time.monotonic(), _processor_s()
-    measures, series = {}, {}
+    measures, series, absent = {}, {}, {}
     try:
         os.mkdir(folder)
         measures, series = do(run.settings, run.seed, Tools(program, folder, out))
-        failure = measures.pop("failure", None)
+        failure, absent = measures.pop("failure", None), measures.pop("absent", {})
     except Failed as error:
         failure = str(error)
     except _Stopped:
@@ -51,13 +51,14 @@ def _one(do, run, program, folder, out=""):
         place = traceback.extract_tb(error.__traceback__)[-1]
         failure = f"{type(error).__name__}: {error} ({os.path.basename(place.filename)}:{place.lineno})"
         failure = failure.replace(folder + os.sep, "")  # so that the same cause has the same words
-    return _result(run, measures, failure, series, time.monotonic() - begun, _processor_s() - worked)
+    return {**_result(run, measures, failure, series, time.monotonic() - begun, _processor_s() - worked), "absent": absent}
 
 
 def _result(run, measures, failure, series, wall_s, processor_s):
+    """absent: why a measure has no value, by its name."""
     return {"condition": run.condition, "seed": run.seed, "files": run.files, "settings": run.settings, "measures": measures,
             "failure": failure and " ".join(failure.split()), "series": series, "wall_s": round(wall_s, 3),
-            "processor_s": round(processor_s, 3)}
+            "processor_s": round(processor_s, 3), "absent": {}}
 
 
 def _processor_s():

@@ -27,6 +27,9 @@ from report import write_file
 from scenario import Failed, Refused, check_keys
 
 WORDS = ("begin", "enrol", "run", "ask", "mark", "withdraw", "table", "wizard")
+# Commands of the program (tools/neritic/command_line).
+COMMANDS = ("render", "sonar", "dive", "serve", "keys", "tradeoff", "check", "plan", "physio", "register", "experiment", "study",
+            "recording", "hud", "simulate", "doctor")
 # Flags of neritic whose value is a file or folder that a block writes.
 WRITES = ("--record", "--recordings", "--log", "--plot", "--save", "--screenshot", "--timeline", "--out")
 
@@ -61,6 +64,9 @@ def read_plan(path):
                           "not before or after")
         if not isinstance(block.get("command", []), list) or not all(isinstance(w, str) for w in block.get("command", [])):
             raise Refused(f"{path}: blocks[{i}].command: found {block['command']!r}; accepted: a list of words for neritic")
+        first = next((w for w in block.get("command", []) if not w.startswith("-")), None)
+        if block.get("command") and first not in COMMANDS:
+            raise Refused(f"{path}: blocks[{i}].command: found {first or block['command']!r}; accepted, as the first word: {', '.join(COMMANDS)}")
         _check_writes(f"{path}: blocks[{i}].command", block.get("command", []))
         names.append(block["name"])
     return plan
@@ -302,8 +308,7 @@ def _block(asked, place, block, turn):
 def withdraw(asked, screen):
     Study(asked.folder).place(asked.who, withdrawn_too=True)
     if not asked.yes and screen.ask(f"This erases all that {asked.who} left, for good. Type {asked.who} to do it:") != asked.who:
-        screen.say("Nothing is erased.")
-        return
+        raise Failed(f"study withdraw: {asked.who} was not typed; nothing is erased")
     with alone(asked.folder) as study:
         # First the word that they have withdrawn, then the data; the same command goes on where it was cut short.
         place = study.place(asked.who, withdrawn_too=True)

@@ -45,8 +45,9 @@ def summarise(scenario, results):
                 measures[name] = {"unit": unit, "n": len(values), "median": middle, "low": low, "high": high,
                                   "min": min(values), "max": max(values)}
         causes = collections.Counter(r["failure"] for r in group if r["failure"])
+        absent = collections.Counter(f"{name}: {why}" for r in group for name, why in r.get("absent", {}).items())
         conditions.append({"condition": condition, "runs": len(group), "failed": sum(causes.values()),
-                           "failures": dict(causes.most_common()), "measures": measures})
+                           "failures": dict(causes.most_common()), "absent": dict(absent.most_common()), "measures": measures})
     criteria = [_judge(scenario, results, c) for c in scenario.criteria]
     return {"experiment": scenario.name, "title": scenario.title, "about": scenario.about, "kind": scenario.kind_name,
             "seed": scenario.seed, "runs": len(results),

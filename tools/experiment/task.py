@@ -78,13 +78,19 @@ class _Course:
     def measures(self, step_s):
         if self.stage < len(self.task.stages) and self.failure is None:
             self.failure = f"stage {self.name()} not done in {self.task.seconds:g} s"
-        out = {"success": self.failure is None, **self.ends, "failure": self.failure}
+        absent = {}
+        out = {"success": self.failure is None, **self.ends, "failure": self.failure, "absent": absent}
         if self.failure is None:
             out["time_s"] = self.begun if not self.ends else sum(self.ends.values())
         for m in self.task.measures:
-            value = _statistic(m["statistic"], np.array(self.rows[m["name"]]), step_s)
+            rows = self.rows[m["name"]]
+            value = _statistic(m["statistic"], np.array(rows), step_s)
             if value is not None:
                 out[m["name"]] = value
+            elif rows:
+                absent[m["name"]] = f"{m['of'].text} was no number at any moment, as where it divides by zero"
+            else:
+                absent[m["name"]] = f"stage {m['stage']} was not reached" if m["stage"] else "no moment was judged"
         return out
 
 
