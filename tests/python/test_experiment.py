@@ -157,7 +157,7 @@ class Runs(unittest.TestCase):
 
     def run_all(self, out, seeds, workers, resume=False):
         runs = [scenario.Run(i, {}, seed, {}) for i, seed in enumerate(seeds)]
-        plan = SimpleNamespace(name="x", kind_name="x", kind=SimpleNamespace(run=act), run_limit_s=1.0, list_runs=lambda: runs,
+        plan = SimpleNamespace(name="x", kind_name="x", kind=SimpleNamespace(run=act), run_limit_s=3.0, list_runs=lambda: runs,
                                fingerprint=lambda: "")
         with unittest.mock.patch.object(runner, "GRACE_S", 0.5):
             return runner.run_all(plan, out, "none", workers, resume, True)
@@ -173,7 +173,7 @@ class Runs(unittest.TestCase):
                 self.assertRegex(causes[1], r"^SystemExit: 3 \(test_experiment.py:\d+\)$")
                 self.assertEqual(causes[2], "its process ended with status 4")
                 self.assertRegex(causes[3], r"^ValueError: two lines \(")
-                self.assertEqual(causes[4:6], ["did not end within 1 s of the clock (run_limit_s)"] * 2)
+                self.assertEqual(causes[4:6], ["did not end within 3 s of the clock (run_limit_s)"] * 2)
                 self.assertIn("killed by SIGKILL", causes[6])
                 self.assertEqual(os.listdir(scratch), [])  # what the runs wrote is gone
                 # They are kept as they ended, so that --resume has nothing left to do.
