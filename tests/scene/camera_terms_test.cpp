@@ -188,8 +188,9 @@ TEST(Flock, KeepsClearOfWhatItAvoidsAndSwimsOn) {
       mean += glm::length(step) / 0.02 / 1200.0;
       // It looks where it swims, as far as fish pitch.
       const Vec3 ahead = -glm::normalize(Vec3(now[i][2]));
-      if (glm::length(step) > 1e-3)
+      if (glm::length(step) > 1e-3) {
         EXPECT_GT(ahead.x * step.x + ahead.z * step.z, 0.0) << i << " at " << t;
+      }
     }
   }
   EXPECT_NEAR(mean, 0.5, 0.15);
