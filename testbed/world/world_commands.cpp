@@ -81,10 +81,19 @@ Result<Said> diver_command(const std::string& where, const std::string& kind,
   }
   const std::size_t count = ros::value_count(found->second);
   // Joints without the power beside them, as the swimmer's.
-  if (found->second == PayloadKind::kBodyJoints && values.size() + 1 == count)
-    values.push_back(0.0);
-  NERITIC_TRY_STATUS(check_count(where, values.size(), count, count));
+  const bool joints = found->second == PayloadKind::kBodyJoints;
+  NERITIC_TRY_STATUS(check_count(where, values.size(), joints ? count - 1 : count, count));
+  values.resize(count, 0.0);
   return Said{found->second, values};
+}
+
+// A tank that the diver has.
+Status check_tank(const PhysicsHuman& human, const std::string& where, double value) {
+  const auto tanks = static_cast<double>(human.body.tank_count);
+  if (value >= 0.0 && value < tanks && value == std::floor(value)) return {};
+  return refusal(where, fmt::format("{}", value),
+                 tanks > 0.0 ? fmt::format("a tank's number, 0 to {}", tanks - 1.0)
+                             : std::string("a diver with tanks"));
 }
 
 Result<Said> object_command(const PhysicsObject& object, const std::string& where,
@@ -151,6 +160,12 @@ Status World::Parts::push(SourceId source, StreamId stream, const Payload& paylo
   const std::string& name = world().streams()[stream].name;
   const TimeNs now = newest().host_ns;
   captured_ns -= newest().scene_from_host_ns();
+  constexpr TimeNs kRounding_ns = 1'000'000;
+  if (captured_ns > now + kRounding_ns)
+    return refusal(name,
+                   fmt::format("a stamp {:.3g} s ahead of the newest step",
+                               1e-9 * static_cast<double>(captured_ns - now)),
+                   "finite, plausible samples in their order, up to 0.5 s old");
   const SampleVerdict verdict = physics->inbox().push(
       {{stream, source, sequences[{source, stream}]++, captured_ns, now}, payload});
   if (verdict == SampleVerdict::kAccepted) return {};
@@ -241,6 +256,8 @@ Status World::command(const std::string& name, const std::string& kind,
     sort = OwnerSort::kDiver;
     owner -= static_cast<std::uint32_t>(vehicles);
     NERITIC_TRY(said, diver_command(where, kind, values));
+    if (said.kind == PayloadKind::kGas)
+      NERITIC_TRY_STATUS(check_tank(world.humans()[owner], where, said.values[0]));
   } else {
     sort = OwnerSort::kObject;
     owner -= static_cast<std::uint32_t>(vehicles + humans);

@@ -112,7 +112,8 @@ TEST(Body, TwoTanksAlikeAreATwinSet) {
   EXPECT_EQ(tanks_on_back(gear), 2u);
   EXPECT_NEAR(twin.tanks[0].position_m.y, gear.tanks[0].radius_m + 0.005, 1e-12);
   EXPECT_EQ(twin.tanks[1].position_m.y, -twin.tanks[0].position_m.y);
-  EXPECT_LT(twin.tanks[2].position_m.y, -0.2);
+  EXPECT_LT(twin.tanks[2].position_m.y, -0.1);  // alone, before the ribs
+  EXPECT_GT(twin.tanks[2].position_m.z, 0.1);
   gear.tanks[1].mix.oxygen = 0.5;
   EXPECT_EQ(tanks_on_back(gear), 1u);
   EXPECT_LT(body_with(gear).tanks[1].position_m.y, -0.2);

@@ -150,5 +150,23 @@ TEST_F(WorldTest, RefusesInOneLine) {
   }
 }
 
+TEST_F(WorldTest, RefusesATankThatADiverLacksAndAStampThatIsToCome) {
+  NERITIC_ASSERT_OK(const auto world, World::open(assets("scenes/dive.toml"), {}));
+  const auto said = [](const Status& status) {
+    return status.ok() ? std::string() : status.error().message;
+  };
+  const auto gas = [&](double tank) { return said(world->command("diver", "gas", {&tank, 1})); };
+  EXPECT_EQ(gas(0.0), "");
+  EXPECT_EQ(gas(1.0), "diver: gas: found 1; accepted: a tank's number, 0 to 0");
+  EXPECT_NE(gas(0.5).find("found 0.5"), std::string::npos);
+  EXPECT_NE(gas(-1.0).find("found -1"), std::string::npos);
+  const std::vector<double> joints(59, 0.0);
+  EXPECT_EQ(said(world->command("diver", "joints", joints)),
+            "diver: joints: found 59 numbers; accepted: 60 or 61");
+  const double beat[] = {0.0, 0.0, 0.0, 1.0};
+  const std::string later = said(world->inject("diver/heart", beat, "strap", 2.5));
+  EXPECT_NE(later.find("ahead of the newest step"), std::string::npos) << later;
+}
+
 }  // namespace
 }  // namespace neritic::testbed
