@@ -30,6 +30,13 @@ Snow read_snow(TableReader& reader) {
                                         {0, 50, true, false, "millimetres"});
   out.spread = reader.number("spread", out.spread, {0, 2});
   out.range_m = reader.number("range_m", out.range_m, {0, 20, true, false, "metres"});
+  // Each is kept: 2e7 take some 3 s and 200 MB.
+  constexpr double kMostParticles = 2e7;
+  const double particles = out.density_m3 * 4.0 / 3.0 * kPi * std::pow(out.range_m, 3);
+  if (particles > kMostParticles)
+    reader.refuse("range_m",
+                  fmt::format("at most {:.3g} m with {:g} particles per cubic metre",
+                              std::cbrt(kMostParticles / particles) * out.range_m, out.density_m3));
   out.drift_m_s = reader.vector3("drift_m_s", out.drift_m_s, {-100, 100, false, false, "m/s"});
   out.shutter_s = reader.number("shutter_s", out.shutter_s, {0, 1, false, false, "seconds"});
   return out;

@@ -50,6 +50,39 @@ void add_axes(const PhysicsVehicle& vehicle, std::vector<std::string>& lines) {
                                   vehicle.name, axis == 5 ? "N m" : "N", words));
 }
 
+// A weight beside the lift that the thrusters do not balance, so that the vehicle tilts.
+void add_trim(const PhysicsVehicle& vehicle, std::vector<std::string>& lines) {
+  constexpr double kTilted_rad = radians(10.0);
+  const rov::Vehicle& v = vehicle.vehicle;
+  // N m for each axis: ahead, to starboard, down.
+  const Vec3 off = v.weight_n * v.gravity_centre_m - v.buoyancy_n * v.buoyancy_centre_m;
+  const auto held = [&](std::size_t axis) {
+    return std::min(most_along(vehicle, axis_of(axis, 1.0)),
+                    most_along(vehicle, axis_of(axis, -1.0)));
+  };
+  const auto add = [&](double moment_n_m, std::size_t axis, const char* words) {
+    const double tilt_rad = std::atan2(std::abs(moment_n_m), off.z), held_n_m = held(axis);
+    if (std::abs(moment_n_m) <= held_n_m || tilt_rad < kTilted_rad) return;
+    lines.push_back(
+        fmt::format("{}: its weight pulls the {} down with {:.3g} N m, its thrusters hold {:.3g}: "
+                    "left alone it tilts by {:.0f} degrees",
+                    vehicle.name, words, std::abs(moment_n_m), held_n_m, degrees(tilt_rad)));
+  };
+  add(off.x, 4, off.x > 0.0 ? "nose" : "stern");
+  add(off.y, 3, off.y > 0.0 ? "starboard side" : "port side");
+}
+
+// Places in the air. A vehicle that floats comes no higher.
+void add_places_in_air(const PhysicsVehicle& vehicle, std::vector<std::string>& lines) {
+  const std::vector<Vec3> places = vehicle.mission->waypoints_ned_m();
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (places[i].z < 0.0) {
+      lines.push_back(fmt::format("{}: waypoint {} lies {:.3g} m above the surface", vehicle.name,
+                                  i + 1, -places[i].z));
+      return;
+    }
+}
+
 void add_buoyancy(const PhysicsVehicle& vehicle, std::vector<std::string>& lines) {
   const double up_n = vehicle.vehicle.buoyancy_n - vehicle.vehicle.weight_n;
   const double most_n = most_along(vehicle, axis_of(2, up_n > 0.0 ? 1.0 : -1.0));
@@ -358,6 +391,8 @@ std::vector<std::string> cannot_hold(const PhysicsWorld& world) {
     if (vehicle.battery) add_battery(vehicle, way_of(world, vehicle), lines);
     add_axes(vehicle, lines);
     add_buoyancy(vehicle, lines);
+    add_trim(vehicle, lines);
+    add_places_in_air(vehicle, lines);
     if (add_current(world, vehicle, lines)) continue;
     const auto legs = vehicle.mission->legs(vehicle.start, start);
     if (!add_no_way(world, vehicle, legs, lines)) add_slow(world, vehicle, legs, lines);

@@ -62,6 +62,9 @@ INSTANTIATE_TEST_SUITE_P(
             "7C, 9C"},
         WrongLine{"[water]\nscattering = 1",
                   "s.toml:2: water.scattering: found 1; accepted: true or false"},
+        WrongLine{"[water]\n[water.snow]\ndensity_m3 = 20000\nrange_m = 20",
+                  "s.toml:4: water.snow.range_m: found 20; accepted: at most 6.2 m with 20000 "
+                  "particles per cubic metre"},
         WrongLine{"[water]\nsurfaces = true",
                   "s.toml:2: water.surfaces: unknown key; nearest known key: surface"},
         WrongLine{"[classes]\nnet = 0",

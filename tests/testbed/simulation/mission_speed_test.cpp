@@ -236,6 +236,29 @@ TEST(MissionSpeed, TheOutlookNamesWhatADiverCannotSwim) {
             "diver: 0.4 m/s through the water makes no way to waypoint 2 in a current of 0.45 m/s");
 }
 
+TEST(MissionSpeed, TheOutlookNamesAPlaceInTheAirAndATiltThatThrustersDoNotHold) {
+  const std::string mission =
+      "position_m = [0, -10, 0]\n[vehicles.mission]\nspeed_m_s = 0.3\nwaypoints = [ { position_m = "
+      "[0, -10, -4] }, { position_m = [0, 2, -4] } ]\n";
+  EXPECT_EQ(told(kStillWater + rov_text(mission)), "rov: waypoint 2 lies 2 m above the surface");
+  std::string text =
+      read_text(std::filesystem::path(vehicles_folder()) / "bluerov2_heavy_dynamics.toml").value();
+  const std::string centre = "buoyancy_centre_m = [0, 0, -0.01]";
+  ASSERT_NE(text.find(centre), std::string::npos);
+  text.replace(text.find(centre), centre.size(), "buoyancy_centre_m = [0.5, 0, -0.02]");
+  const std::string thrust = "t200_thrust.csv";
+  text.replace(text.find(thrust), thrust.size(), vehicles_folder() + "/" + thrust);
+  const test::ScratchFolder scratch;
+  ASSERT_TRUE(write_text(scratch / "heavy_stern.toml", text).ok());
+  const std::string lines = told(std::string(kStillWater) +
+                                 "[[vehicles]]\nname = \"rov\"\nshape = \"box\"\ndynamics = \"" +
+                                 (scratch / "heavy_stern.toml").string() +
+                                 "\"\nposition_m = [0, -10, 0]\nmission = { waypoints = [ { "
+                                 "position_m = [0, -10, -4] } ] }\n");
+  EXPECT_NE(lines.find("rov: its weight pulls the stern down with "), std::string::npos) << lines;
+  EXPECT_NE(lines.find("left alone it tilts by "), std::string::npos) << lines;
+}
+
 TEST(MissionSpeed, TheOutlookNamesAWayThatIsTooSteepToSwim) {
   const auto lines = [](const std::string& points) {
     return told(kStillWater +
