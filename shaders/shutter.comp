@@ -17,7 +17,7 @@ layout(set = 0, binding = kExposureData, scalar) uniform Data { ShutterParams sh
 
 ivec3 inside(vec2 px, int layer, ivec2 size) { return ivec3(clamp(ivec2(floor(px)), ivec2(0), size - 1), layer); }
 
-// What will be behind the camera has none.
+// A point that will be behind the camera counts as still.
 vec2 motion_at(ivec3 at) {
   vec2 motion = texelFetch(motion_image, at, 0).xy;
   return any(isnan(motion)) || any(isinf(motion)) ? vec2(0.0) : motion;

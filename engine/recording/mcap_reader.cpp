@@ -63,7 +63,7 @@ class Reading {
   std::vector<std::byte> content_, unpacked_;
   bool unpacked_whole_ = false;
   std::set<std::uint16_t> schemas_, channels_;
-  // Of the summary, which is looked up where those of the data section were damaged.
+  // From the summary, for channels whose records in the data section are damaged.
   std::map<std::uint16_t, McapSchema> summary_schemas_;
   std::map<std::uint16_t, McapChannel> summary_channels_;
   std::set<std::uint64_t> summary_chunks_;  // where they begin

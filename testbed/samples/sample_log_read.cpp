@@ -70,7 +70,7 @@ class LogVisitor final : public recording::McapVisitor {
   SampleLog log_;
   bool known_ = false;  // its metadata came
   bool gap_ = false;    // steps are missing: nothing that comes later is of use
-  // Of what comes first after steps that are missing, if they are.
+  // Set at the first step after missing ones.
   std::optional<Error> doubt_;
   std::map<std::uint16_t, recording::McapSchema> schemas_;
   std::map<std::uint16_t, Channel> channels_;

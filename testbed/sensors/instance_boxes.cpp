@@ -143,11 +143,11 @@ class Silhouette {
   explicit Silhouette(const PictureMap& map) : map_(map), edges_(edges_of(map)) {}
 
   // View axes; ahead of the near plane.
-  void add(const std::vector<Vec3>& polygon) {
-    std::vector<Vec3> part = clipped(polygon, Vec3(1.0, 0.0, edges_[0]), 0.0);
-    part = clipped(part, Vec3(-1.0, 0.0, -edges_[1]), 0.0);
-    part = clipped(part, Vec3(0.0, 1.0, edges_[2]), 0.0);
-    part = clipped(part, Vec3(0.0, -1.0, -edges_[3]), 0.0);
+  void add(std::vector<Vec3> part) {
+    for (const Vec3& inward : {Vec3(1.0, 0.0, edges_[0]), Vec3(-1.0, 0.0, -edges_[1]),
+                               Vec3(0.0, 1.0, edges_[2]), Vec3(0.0, -1.0, -edges_[3])})
+      if (std::ranges::any_of(part, [&](const Vec3& p) { return glm::dot(inward, p) < 0.0; }))
+        part = clipped(part, inward, 0.0);
     for (std::size_t i = 2; i < part.size(); ++i) {
       Piece piece{{part[0], part[i - 1], part[i]}, 0.0};
       const auto plane = [](const Vec3& p) { return glm::dvec2(p) / -p.z; };
@@ -231,7 +231,7 @@ InstanceBox box_of(const ModelShape& shape, const Mat4& world_from_model,
       polygon = clipped(polygon, ahead, map.near_m);
       for (const Vec3& p : polygon) grow(box.whole, first, map.pixel_of(p));
     }
-    silhouette.add(polygon);
+    silhouette.add(std::move(polygon));
   }
   box.points = silhouette.points();
   box.size_m = own.max - own.min;

@@ -107,8 +107,8 @@ Result<CameraHdr> declare_camera(const FrameParts& frame, const std::string& pre
   return out;
 }
 
-// Which of a lens's rows shows each part of the picture before it. Where the lens shows nothing of
-// it, as without a lens.
+// Fills the grid with the sensor's row that shows each point of the picture before the lens. A
+// point that the lens does not show gets the row that it has without a lens.
 void add_rows(const scene::Lens& lens, const scene::LensView& view, std::uint32_t height,
               shared::ShutterParams& params) {
   params.by_lens = 1;

@@ -98,7 +98,7 @@ TEST_F(Recording, ADamagedOneIsFoundAndMended) {
   EXPECT_EQ(neritic("recording repair " + file("a.mcap") + " --out " + file("a.mcap")).status, 2);
 }
 
-// What was good before the damage is replayed, what was good behind it is exported.
+// A repaired file replays the steps before the damage and exports those behind it.
 TEST_F(Recording, ARepairedOneReplaysAsFarAsBefore) {
   damage("bad.mcap", 500, 2);
   const Outcome before = neritic("recording check " + file("bad.mcap"));

@@ -239,7 +239,7 @@ TEST_F(CameraTermsTest, ALensPutsThingsWhereItsFormulaSays) {
   }
 }
 
-// Of few vertices: half of one thing hidden, nearly all of another, and next to nothing.
+// Each box has eight corners. A half of one is hidden, then nearly all, then next to nothing.
 TEST_F(CameraTermsTest, OcclusionIsTheHiddenShareOfWhatAThingCovers) {
   scene::Scene scene = scene_with({}, 256);
   scene.models.push_back(std::make_shared<scene::Model>(scene::make_box({1.0, 1.0, 0.1})));

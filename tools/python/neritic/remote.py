@@ -23,7 +23,7 @@ from .observations import Truth
 from .world import MOST_STEPS, World
 
 _PROTOCOL = 1
-# Of one request (testbed/server/request.hpp).
+# Limits of one request (testbed/server/request.hpp).
 _STEPS, _WAIT_S = 100_000, 60.0
 _ROW = struct.Struct("<IIQqq")
 Row = tuple[tuple[int, int, int, int, int], NDArray[np.float64]]
