@@ -133,7 +133,7 @@ void main() {
   vec3 ray_corner = views[layer].ray_corner;
   float near_m = views[layer].near_m, pixel_rad = length(ray_dx);
   take_light();
-  if (light_has(kLightWaves)) take_sea();
+  if (light_has(kLightSurface)) take_sea();
   if (light_has(kLightLampShadows)) take_lamp_shadows();
   ivec3 at = ivec3(gl_GlobalInvocationID);
   at.y += int(push.first_group * kShadeGroup);
@@ -174,24 +174,27 @@ void main() {
   float sight_m = hit ? planar_m * stretch : kForever_m;
   SeaPoint surface;
   bool meets = false, from_above = false;
-  if (light_has(kLightWaves)) {
-    from_above = eye_depth_m + sea.eye_height_m < 0.0;
-    meets = kSeaSeen && sea_meets(eye, direction, pixel_rad, sight_m, surface);
+  if (light_has(kLightSurface)) {
+    // A camera looks through its near plane as through a housing's window: where that is in the air, so is the sight.
+    // So the surface parts the picture of one that is half in the water.
+    vec3 window = eye + ray * near_m;
+    from_above = window.y - light.origin_depth_m >= sea_over_eye(window.xz);
+    meets = kSeaSeen && sea_meets(eye, direction, from_above, pixel_rad, sight_m, surface);
     meets = meets && surface.distance_m < sight_m;
     if (meets && !from_above) {
       // From below nothing above the water is seen but the sky.
-      radiance = sea_from_below(surface, eye, direction);
+      radiance = sea_from_below(surface, eye, direction, pixel_rad);
       hit = false;
       sight_m = surface.distance_m;
     } else if (!hit) {
-      radiance = from_above && !meets ? sky_over(direction) : vec3(0.0);
+      radiance = from_above && !meets ? sky_and_sun(direction, pixel_rad) : vec3(0.0);
     }
     // So that the still surface lies where the sight meets the waves.
     if (meets) eye_depth_m = max(from_above ? -1e9 : 0.0, surface.distance_m * direction.y);
     else if (from_above) eye_depth_m = -1e9;
-    else eye_depth_m = max(eye_depth_m + sea.eye_height_m, 1e-3);
+    else eye_depth_m = max(eye_depth_m + sea_over_eye(eye.xz), 1e-3);
   } else if (!hit) {
-    radiance = beyond(eye_depth_m, direction);
+    radiance = light_has(kLightWater) ? vec3(0.0) : light.background;
   }
   Sight sight = look_through(eye_depth_m, direction, sight_m, lit_at(at, planar_m));
   if (light_has(kLightForwardScatter)) {
@@ -200,8 +203,8 @@ void main() {
     imageStore(scattered_image, to, hit && !hidden ? vec4(clamp(kept, vec3(-60000.0), vec3(60000.0)), sight.length_m) : vec4(0.0));
   }
   radiance = radiance * sight.transmittance + sight.added;
-  if (light_has(kLightWaves) && meets && from_above)
-    radiance = sea_from_above(surface, eye, direction, radiance);
+  if (light_has(kLightSurface) && meets && from_above)
+    radiance = sea_from_above(surface, eye, direction, radiance, pixel_rad);
   radiance += lamp_glow(eye, direction, sight_m);
   if (hidden) radiance = vec3(0.0);
   imageStore(hdr_image, to, vec4(min(radiance * light.exposure, vec3(60000.0)), 1.0));

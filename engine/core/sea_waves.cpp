@@ -81,6 +81,9 @@ double jonswap(const SeaState& sea, double angular_s) {
 }
 
 SeaWaves::SeaWaves(const SeaState& sea) {
+  // Cox and Munk 1954: mean square slope of a clean surface, both axes.
+  const double slope2 = 0.003 + 0.00512 * std::max(sea.wind_m_s, 0.0);
+  fine_slope2_ = slope2;
   if (!(sea.wind_m_s > 0.0) || sea.components == 0) return;
   const double peak = jonswap_peak(sea);
   const double first = 0.6 * peak;
@@ -112,8 +115,7 @@ SeaWaves::SeaWaves(const SeaState& sea) {
     waves_.push_back(wave);
   }
   height_rms_m_ = std::sqrt(height_rms_m_);
-  // Cox and Munk 1954: mean square slope of a clean surface, both axes.
-  fine_slope2_ = std::max(0.003 + 0.00512 * sea.wind_m_s - slope2_, 0.001);
+  fine_slope2_ = std::max(slope2 - slope2_, 0.001);
   foam_share_ = std::min(3.84e-6 * std::pow(sea.wind_m_s, 3.41), 1.0);
 }
 

@@ -299,6 +299,9 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameSta
       add_model_sun(light, placed);
     else if (light.lamp_count < shared::kMaxLamps)
       add_model_lamp(light, placed, origin_m);
+  if ((light.terms & shared::kLightSurface) &&
+      glm::dot(light.surface_irradiance, Vec3f(light.direct_share)) > 0.0f)
+    light.terms |= shared::kLightSunSeen;
   const double illuminance = scene_illuminance_lx(light, scene, state.lights);
   double scale = kPi / illuminance;
   if (const double water = water_luminance(light); water > 0.0)
@@ -327,7 +330,8 @@ std::string names_of_terms(const shared::Lighting& lighting) {
       {shared::kLightWaves, "waves"},
       {shared::kLightMurk, "murk"},
       {shared::kLightShafts, "light shafts"},
-      {shared::kLightProfiles, "beam profiles"}};
+      {shared::kLightProfiles, "beam profiles"},
+      {shared::kLightSunSeen, "the sun's image"}};
   std::vector<std::string> names;
   for (const auto& [bit, name] : kNames)
     if (lighting.terms & bit) names.emplace_back(name);

@@ -35,6 +35,7 @@ shared::Waves gpu_waves(const SeaWaves& sea, const Vec3& origin_m, double time_s
   out.foam_shift = Vec2f(static_cast<float>(std::fmod(3.0 * origin_m.x, 4096.0)),
                          static_cast<float>(std::fmod(3.0 * origin_m.z, 4096.0)));
   out.eye_height_m = static_cast<float>(sea.height_m(origin_m.x, origin_m.z, time_s));
+  out.eye_slope = Vec2f(sea.slope(origin_m.x, origin_m.z, time_s));
   return out;
 }
 

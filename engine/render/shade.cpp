@@ -29,7 +29,13 @@ std::vector<ShadeRows> rows_of_sea(const ViewSet& views, const shared::Lighting&
   std::uint32_t first = groups_high, end = 0;
   const auto all = gpu_views(views);
   for (const shared::View& view : std::span(all).first(views.views.size())) {
-    const float deep_m = lighting.origin_depth_m - view.eye.y + waves.eye_height_m - room_m;
+    // The window that it looks through is higher than the eye (shaders/shade.comp).
+    float highest = 0.0f;
+    for (const float y : {0.0f, static_cast<float>(views.height)})
+      for (const float x : {0.0f, static_cast<float>(views.width)})
+        highest = std::max(highest, view.ray_corner.y + x * view.ray_dx.y + y * view.ray_dy.y);
+    const float deep_m =
+        lighting.origin_depth_m - view.eye.y + waves.eye_height_m - room_m - highest * view.near_m;
     if (!(deep_m > 0.0f)) return {{0, groups_high, true, nullptr}};
     const float least = std::max(deep_m * clearest / shared::kSeaFaded, 2e-3f);
     for (std::uint32_t g = 0; g < groups_high; ++g) {
@@ -75,7 +81,8 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
       inputs.waves ? std::optional(*inputs.waves) : std::nullopt;
   NERITIC_CHECK(waves || !(lighting.terms & shared::kLightWaves), "{}shade: no waves", prefix);
   // Rows that see no sea are spared its waves: a CPU driver computes them for every pixel.
-  std::vector<ShadeRows> rows{{0, groups(gbuffer.height), waves.has_value(), nullptr}};
+  const bool surface = (lighting.terms & shared::kLightSurface) != 0;
+  std::vector<ShadeRows> rows{{0, groups(gbuffer.height), surface, nullptr}};
   if (waves) rows = rows_of_sea(views, lighting, *waves, groups(gbuffer.height));
   // Tiles of water alone are shaded without what solids need. Not with waves: lists beside them
   // smash lavapipe's stack (Mesa 22.3; seen in PictureExtremes.EachTermIsInTheGraphOnlyWhere...).
@@ -85,7 +92,8 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
   if (tiled) {
     NERITIC_TRY(tiles, declare_shade_tiles(graph, prefix, gbuffer,
                                            {groups(gbuffer.width), groups(gbuffer.height)}));
-    rows = {{.surfaces = false, .list = 0}, {.surfaces = true, .list = 1}};
+    rows = {{.sea = surface, .surfaces = false, .list = 0},
+            {.sea = surface, .surfaces = true, .list = 1}};
   }
   for (ShadeRows& part : rows) {
     gpu::Pipeline& pipeline = shade_[{

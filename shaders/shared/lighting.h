@@ -25,6 +25,8 @@ NERITIC_CONST uint kLightMurk = 1u << 22;
 // The sun's light in the water comes through waves and past solids. Some lamp has a profile.
 NERITIC_CONST uint kLightShafts = 1u << 23;
 NERITIC_CONST uint kLightProfiles = 1u << 24;
+// The sun is above the horizon of a scene with the surface: its disc and its glitter.
+NERITIC_CONST uint kLightSunSeen = 1u << 25;
 // Refractive index of sea water against air, in the visible (1.33 to 1.34, Mobley 1994).
 NERITIC_CONST float kWaterIndex = 1.333f;
 // Diffuse sky light through a flat surface (Mobley 1994, sec. 4.2: reflectance 0.066).
@@ -105,9 +107,9 @@ NERITIC_CONST uint kSpecTerms = 0;
 NERITIC_CONST uint kSpecLamps = 1;
 NERITIC_CONST uint kSpecSeenStep = 2;     // pixels a side to one of the visibility image
 NERITIC_CONST uint kSpecGlowSamples = 3;  // of a lamp's beam along a sight
-NERITIC_CONST uint kSpecSeaSeen = 4;   // with kLightWaves: whether these rows can see the surface
-NERITIC_CONST uint kSpecTiled = 6;     // workgroups take their tiles from a list
-NERITIC_CONST uint kSpecSurfaces = 7;  // 0: no pixel of these tiles shows a solid
+NERITIC_CONST uint kSpecSeaSeen = 4;      // with kLightSurface: whether these rows can see it
+NERITIC_CONST uint kSpecTiled = 6;        // workgroups take their tiles from a list
+NERITIC_CONST uint kSpecSurfaces = 7;     // 0: no pixel of these tiles shows a solid
 // Push constant of the shade pass: the first row of workgroups, or where its list of tiles begins.
 struct ShadePush {
   uint first_group;

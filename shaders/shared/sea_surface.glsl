@@ -1,6 +1,7 @@
-// The wavy surface as seen from below and above: Snell's window with the refracted sky, total reflection
-// outside, the sun's glitter, whitecaps. GLSL only; the including file declares sea_data, a uniform block of
-// type Waves, includes shared/water.glsl first, and its main() begins with take_sea(). Slopes of waves too short for a pixel spread what is seen.
+// The surface as seen from below and above, flat without kLightWaves: Snell's window with the refracted sky, total
+// reflection outside, the sun's disc and its glitter, whitecaps. GLSL only; the including file declares sea_data, a
+// uniform block of type Waves, includes shared/water.glsl first, and its main() begins with take_sea(). Slopes of
+// waves too short for a pixel spread what is seen.
 #ifndef NERITIC_SEA_SURFACE_GLSL
 #define NERITIC_SEA_SURFACE_GLSL
 
@@ -8,6 +9,13 @@
 
 Waves sea;  // without its waves
 void take_sea() {
+  if (!light_has(kLightWaves)) {
+    sea.count = 0u;
+    sea.height_rms_m = sea.slope2 = sea.foam_height_m = sea.eye_height_m = 0.0;
+    sea.foam_shift = sea.eye_slope = vec2(0.0);
+    sea.fine_slope2 = kCalmSlope2;
+    return;
+  }
   sea.count = sea_data.count;
   sea.height_rms_m = sea_data.height_rms_m;
   sea.slope2 = sea_data.slope2;
@@ -15,6 +23,7 @@ void take_sea() {
   sea.foam_height_m = sea_data.foam_height_m;
   sea.foam_shift = sea_data.foam_shift;
   sea.eye_height_m = sea_data.eye_height_m;
+  sea.eye_slope = sea_data.eye_slope;
 }
 
 // Waves first to first + kLanes - 1: a processor's lanes read one each. All lanes call these, or none.
@@ -59,6 +68,7 @@ float wave_kept(float k) {
 
 float sea_height(vec2 at, float footprint_m) {
   float sum = 0.0;
+  if (!light_has(kLightWaves)) return sum;
   uint count = min(sea.count, kHighWaves);
   for (uint first = 0u; first < count; first += kLanes) {
     SomeWaves some = some_waves(first);
@@ -75,6 +85,7 @@ float sea_height(vec2 at, float footprint_m) {
 // The sum of waves about a place, without what is shorter than a footprint.
 SeaPoint sea_at(vec2 at, float footprint_m) {
   SeaPoint point;
+  if (!light_has(kLightWaves)) return SeaPoint(0.0, 0.0, vec2(0.0), sea.fine_slope2, 0.0);
   vec3 sum = vec3(0.0);
   float resolved = 0.0, least_m = least_of(footprint_m);
   for (uint first = 0u; first < sea.count; first += kLanes) {
@@ -101,21 +112,25 @@ SeaPoint sea_at(vec2 at, float footprint_m) {
 // Farther off the surface is not told from the horizon, m.
 const float kFarthestSea_m = 3000.0;
 
-// Where a sight meets the surface, unless something ends it before. pixel_rad: of one pixel. Sights along the
-// surface never do.
-bool sea_meets(vec3 eye, vec3 direction, float pixel_rad, float sight_m, out SeaPoint point) {
-  float over_m = eye.y - light.origin_depth_m, off_m = over_m - sea.eye_height_m;
-  float towards = off_m < 0.0 ? direction.y : -direction.y;
+// Height of the surface near the eye, over still water.
+float sea_over_eye(vec2 at) { return sea.eye_height_m + dot(sea.eye_slope, at); }
+
+// Where a sight meets the surface, unless something ends it before. pixel_rad: of one pixel; from_above: whether it
+// comes through the air. Sights along the surface never do.
+bool sea_meets(vec3 eye, vec3 direction, bool from_above, float pixel_rad, float sight_m, out SeaPoint point) {
+  float over_m = eye.y - light.origin_depth_m;
+  float off_m = max((over_m - sea_over_eye(eye.xz)) * (from_above ? 1.0 : -1.0), 0.0);
+  float towards = from_above ? -direction.y : direction.y;
   bool may = towards >= 2e-3;
   if (!may) towards = 1.0;
-  float distance_m = abs(off_m) / towards;
+  float distance_m = off_m / towards;
   float clearest = min(light.beam_attenuation.x, min(light.beam_attenuation.y, light.beam_attenuation.z));
   bool faded = direction.y > 0.0 && distance_m * clearest > kSeaFaded;
   // No wave is higher than this, as in rows_of_sea() of engine/render/shade.cpp.
   float room_m = 6.0 * sea.height_rms_m + 0.05;
-  may = may && distance_m <= kFarthestSea_m && !faded && abs(off_m) - room_m < sight_m * towards;
+  may = may && distance_m <= kFarthestSea_m && !faded && off_m - room_m < sight_m * towards;
   if (!for_any(may)) return false;
-  if (!may) direction = vec3(0.0, off_m < 0.0 ? 1.0 : -1.0, 0.0);  // any that meets it
+  if (!may) direction = vec3(0.0, from_above ? -1.0 : 1.0, 0.0);  // any that meets it
   float footprint_m = may ? 0.5 * pixel_rad * distance_m * inversesqrt(towards) : 1e9;
   distance_m = max((sea_height(eye.xz + direction.xz * distance_m, footprint_m) - over_m) / direction.y, 0.0);
   point = sea_at(eye.xz + direction.xz * distance_m, footprint_m);
@@ -144,11 +159,63 @@ vec3 sun_in_air() {
   return normalize(vec3(level.x, sqrt(max(1.0 - dot(level, level), 1e-4)), level.y));
 }
 
-// The sun's beam spread over a lobe of that variance per axis (rad^2), 1/sr; its disk has 4.7 mrad.
+// The sun's disc: radius 0.2666 degrees (Astronomical Almanac, at 1 au). Per axis its variance is a quarter of the
+// radius squared.
+const float kSunRadius_rad = 4.653e-3;
+const float kSunVariance = 0.25 * kSunRadius_rad * kSunRadius_rad;
+// Variance of a pixel's box per axis, over its width squared.
+const float kPixelVariance = 1.0 / 12.0;
+
+// The sun's beam in air, on what faces it: what is known of it has passed a level surface.
+vec3 beam_in_air(vec3 sun) {
+  if (!light_has(kLightSunSeen)) return vec3(0.0);
+  float passed = 1.0 - fresnel_of(max(light.to_sun.y, 0.0), sun.y);
+  return light.surface_irradiance * (light.direct_share / (max(passed, 0.02) * sun.y));
+}
+
+// Radiance of the sun's disc in the sky, 1 lx of beam: its edge is smooth over a pixel, and it is no smaller than one,
+// so that it neither flickers nor loses light.
+float sun_disc(vec3 direction, vec3 sun, float pixel_rad) {
+  float radius = max(kSunRadius_rad, 0.6 * pixel_rad);
+  float off = length(cross(direction, sun));
+  float share = clamp((radius - off) / pixel_rad + 0.5, 0.0, 1.0);
+  return dot(direction, sun) > 0.0 ? share / (kPi * radius * radius) : 0.0;
+}
+
+// The sky along a sight that nothing ends.
+vec3 sky_and_sun(vec3 direction, float pixel_rad) {
+  vec3 sky = sky_over(direction);
+  if (!light_has(kLightSunSeen)) return sky;
+  vec3 sun = sun_in_air();
+  return sky + beam_in_air(sun) * sun_disc(direction, sun, pixel_rad);
+}
+
+// The sun's beam spread over a lobe of that variance per axis (rad^2), 1/sr.
 float sun_lobe(vec3 direction, vec3 sun, float variance) {
-  float v = variance + 6e-6;
   vec3 off = direction - sun;
-  return exp(-min(0.5 * dot(off, off) / v, 80.0)) / (2.0 * kPi * v);
+  return exp(-min(0.5 * dot(off, off) / variance, 80.0)) / (2.0 * kPi * variance);
+}
+
+// Radiance of the sun's glitter, 1 lx of beam, seen from above: facets that mirror the sun into the sight (Cox and
+// Munk 1954, J. Opt. Soc. Am. 44, 838: R p / (4 cos(eye) cos^4(tilt))). Their slopes are normal about the resolved
+// one. The sun's width and the pixel's count as slopes, half as wide as a mirror turns light. Facets shade each
+// other from a low sun (Walter et al. 2007, eq. 27).
+float glitter(vec3 to_eye, vec3 sun, SeaPoint point, float facing, float pixel_rad) {
+  vec3 h = to_eye + sun;
+  h *= inversesqrt(max(dot(h, h), 1e-8));
+  if (h.y < 0.05) return 0.0;
+  float cosine = max(dot(h, to_eye), 0.0);
+  // Across the plane of incidence a tilt turns the ray by 2 cos(incidence): the mean of both axes.
+  float turn = 1.0 + cosine;
+  float variance = 0.5 * point.rough2 + (kSunVariance + kPixelVariance * pixel_rad * pixel_rad) / (turn * turn);
+  vec2 off = -h.xz / h.y - point.slope;
+  float share = exp(-min(0.5 * dot(off, off) / variance, 80.0)) / (2.0 * kPi * variance);
+  float in_water = sqrt(1.0 - (1.0 - cosine * cosine) / (kWaterIndex * kWaterIndex));
+  float normal_y = inversesqrt(1.0 + dot(point.slope, point.slope));
+  float a = sun.y * inversesqrt(max(point.rough2 * (1.0 - sun.y * sun.y), 1e-8));
+  float lit = a < 1.6 ? (3.535 * a + 2.181 * a * a) / (1.0 + 2.276 * a + 2.577 * a * a) : 1.0;
+  float h2 = h.y * h.y;
+  return fresnel_of(in_water, cosine) * share * lit * normal_y / (4.0 * facing * h2 * h2);
 }
 
 float foam_noise(vec2 p) {
@@ -178,8 +245,8 @@ vec3 deep_below(vec3 down) {
   return scattered_towards(down, light.surface_irradiance, vec3(light.direct_share)) / (rate + 1e-9);
 }
 
-// Light that one facet of the surface sends down against a sight upwards.
-vec3 facet_from_below(vec3 direction, vec2 slope, float rough2, vec3 sun, vec3 mirrored) {
+// Light that one facet of the surface sends down against a sight upwards. beam: the sun's in air.
+vec3 facet_from_below(vec3 direction, vec2 slope, float rough2, vec3 sun, vec3 beam, vec3 mirrored, float pixel_rad) {
   vec3 normal = normalize(vec3(-slope.x, 1.0, -slope.y));
   float in_water = max(dot(direction, normal), 0.02);
   float sine2 = kWaterIndex * kWaterIndex * (1.0 - in_water * in_water);
@@ -188,46 +255,53 @@ vec3 facet_from_below(vec3 direction, vec2 slope, float rough2, vec3 sun, vec3 m
   vec3 up = normalize(kWaterIndex * direction + (in_air - kWaterIndex * in_water) * normal);
   up.y = max(up.y, 0.0);
   float reflected = fresnel_of(in_water, in_air);
-  vec3 sky = sky_over(up) * (kWaterIndex * kWaterIndex);
-  // A facet that tilts by d turns the refracted ray by (n cos / cos' - 1) d.
-  float turn = kWaterIndex * in_water / max(in_air, 0.2) - 1.0;
-  // Irradiance that has passed a level surface, so that Fresnel's share is already in it.
-  vec3 beam = light.surface_irradiance * light.direct_share / max(sun.y, 0.05) * (kWaterIndex * kWaterIndex);
-  vec3 through = sky * (1.0 - reflected) + beam * sun_lobe(up, sun, 0.5 * rough2 * turn * turn);
-  return mix(through, mirrored, reflected);
+  vec3 through = sky_over(up);
+  if (light_has(kLightSunSeen)) {
+    // A facet that tilts by d turns the refracted ray by (n cos / cos' - 1) d; a pixel is wider in air.
+    float wider = kWaterIndex * in_water / max(in_air, 0.2), turn = wider - 1.0;
+    float pixel = pixel_rad * wider;
+    float variance = 0.5 * rough2 * turn * turn + kSunVariance + kPixelVariance * pixel * pixel;
+    through += beam * sun_lobe(up, sun, variance);
+  }
+  return mix(through * (kWaterIndex * kWaterIndex), mirrored, reflected);
 }
 
 // Radiance just below the surface, down along a sight that goes up.
-vec3 sea_from_below(SeaPoint point, vec3 eye, vec3 direction) {
-  vec3 sun = sun_in_air();
-  // Facets that are not resolved, along the sight: Gauss and Hermite's three points.
-  vec2 along = normalize(direction.xz + vec2(1e-6, 0.0)) * sqrt(1.5 * point.rough2);
+vec3 sea_from_below(SeaPoint point, vec3 eye, vec3 direction, float pixel_rad) {
+  vec3 sun = sun_in_air(), beam = beam_in_air(sun);
   // The mirrored deep changes little from facet to facet: that of the middle one stands for all.
   vec3 normal = normalize(vec3(-point.slope.x, 1.0, -point.slope.y));
   vec3 mirror = direction - 2.0 * dot(direction, normal) * normal;
   vec3 mirrored = deep_below(normalize(vec3(mirror.x, -max(-mirror.y, 0.02), mirror.z)));
-  vec3 sum = (4.0 / 6.0) * facet_from_below(direction, point.slope, point.rough2, sun, mirrored) +
-             (1.0 / 6.0) * facet_from_below(direction, point.slope + along, point.rough2, sun, mirrored) +
-             (1.0 / 6.0) * facet_from_below(direction, point.slope - along, point.rough2, sun, mirrored);
+  vec3 sum = facet_from_below(direction, point.slope, point.rough2, sun, beam, mirrored, pixel_rad);
+  if (!light_has(kLightWaves)) return sum;
+  // Facets that are not resolved, along the sight: Gauss and Hermite's three points.
+  vec2 along = normalize(direction.xz + vec2(1e-6, 0.0)) * sqrt(1.5 * point.rough2);
+  sum = (4.0 / 6.0) * sum +
+        (1.0 / 6.0) * facet_from_below(direction, point.slope + along, point.rough2, sun, beam, mirrored, pixel_rad) +
+        (1.0 / 6.0) * facet_from_below(direction, point.slope - along, point.rough2, sun, beam, mirrored, pixel_rad);
   float foam = foam_at(point, (eye + direction * point.distance_m).xz);
   // Foam lets some half of the light through, evenly.
   return mix(sum, light.surface_irradiance * (0.5 / kPi), foam);
 }
 
 // Radiance just above the surface, up along a sight that goes down; below: what comes up in the water.
-vec3 sea_from_above(SeaPoint point, vec3 eye, vec3 direction, vec3 below) {
-  vec3 sun = sun_in_air();
+vec3 sea_from_above(SeaPoint point, vec3 eye, vec3 direction, vec3 below, float pixel_rad) {
   vec3 normal = normalize(vec3(-point.slope.x, 1.0, -point.slope.y));
   float facing = dot(-direction, normal);
-  // Unresolved slopes show their nearer sides: the least cosine is about their deviation.
-  float in_air = max(facing, 0.6 * sqrt(0.5 * point.rough2) + 0.01);
+  // Unresolved slopes show their nearer sides: the least cosine is about their deviation. A flat surface has none.
+  float nearer = max(facing, 0.6 * sqrt(0.5 * point.rough2) + 0.01);
+  float in_air = light_has(kLightWaves) ? nearer : max(facing, 1e-3);
   float in_water = sqrt(1.0 - (1.0 - in_air * in_air) / (kWaterIndex * kWaterIndex));
   float reflected = fresnel_of(in_water, in_air);
   vec3 mirror = direction + 2.0 * in_air * normal;
   mirror = normalize(vec3(mirror.x, max(mirror.y, 0.02), mirror.z));
-  vec3 beam = light.surface_irradiance * light.direct_share / max(sun.y, 0.05);
-  vec3 radiance = reflected * (sky_over(mirror) + beam * sun_lobe(mirror, sun, 2.0 * point.rough2)) +
-                  (1.0 - reflected) * below / (kWaterIndex * kWaterIndex);
+  vec3 radiance = reflected * sky_over(mirror) + (1.0 - reflected) * below / (kWaterIndex * kWaterIndex);
+  if (light_has(kLightSunSeen)) {
+    vec3 sun = sun_in_air();
+    radiance += beam_in_air(sun) * glitter(-direction, sun, point, nearer, pixel_rad);
+  }
+  if (!light_has(kLightWaves)) return radiance;
   float foam = foam_at(point, (eye + direction * point.distance_m).xz);
   // Whitecaps send back some 0.55 of daylight (Koepke 1984: fresh foam).
   return mix(radiance, light.surface_irradiance * (0.55 / kPi), foam);

@@ -169,47 +169,8 @@ Sight look_through(float depth_m, vec3 direction, float length_m) {
   return look_through(depth_m, direction, length_m, 1.0);
 }
 
-// Cosines at which the sun's glow in Snell's window begins and is full: 4.8 and 1.8 degrees. Its
-// smooth step's integral is pi (2 - begin - full) sr.
-const float kGlowEdge = 0.9965;
-const float kGlowFull = 0.9995;
-
 // Longer than any sight in water, m.
 const float kForever_m = 1e9;
-
-// Radiance at the end of a sight that meets no surface of a solid: the water's end, to be looked at
-// through look_through(depth_m, direction, kForever_m).
-vec3 beyond(float depth_m, vec3 direction) {
-  if (!light_has(kLightWater)) return light.background;
-  if (!light_has(kLightSurface)) return vec3(0.0);
-  // Snell's window: within 48.6 degrees of the zenith the sky, outside the mirrored deep.
-  float sine_air = kWaterIndex * sqrt(max(0.0, 1.0 - direction.y * direction.y));
-  vec3 mirrored = vec3(0.0);
-  if (light_has(kLightScattering) && light_has(kLightSun)) {
-    // The light that look_through(0, ..., kForever_m) adds on the way down from the surface.
-    vec3 down = vec3(direction.x, -direction.y, direction.z);
-    vec3 rate = light.beam_attenuation - light.diffuse_attenuation * down.y;
-    mirrored = scattered_towards(down, light.surface_irradiance, vec3(light.direct_share)) / (rate + 1e-9);
-  }
-  // A sky of even radiance holds the light that does not come straight from the sun; what is known of it
-  // has passed the surface. Bluer than daylight as a whole, which counts as white: a tint by eye, of
-  // luminance 1 (ITU-R BT.709).
-  const vec3 kSkyTint = vec3(0.8612, 1.0227, 1.1841);
-  vec3 sky = light.surface_irradiance * ((1.0 - light.direct_share) / (kPi * kSkyTransmittance)) * kSkyTint;
-  if (depth_m < 0.0 && direction.y >= 0.0) return sky;
-  float cosine_air = sqrt(max(0.0, 1.0 - sine_air * sine_air));
-  // Fresnel, unpolarised.
-  float rs = (kWaterIndex * direction.y - cosine_air) / (kWaterIndex * direction.y + cosine_air);
-  float rp = (kWaterIndex * cosine_air - direction.y) / (kWaterIndex * cosine_air + direction.y);
-  float reflected = sine_air >= 1.0 ? 1.0 : 0.5 * (rs * rs + rp * rp);
-  // Sky radiance gains n^2 on entering the water. The sun's beam, spread by waves over a few degrees, is a
-  // glow whose integral over all directions is its irradiance; that has passed the surface already.
-  float to_sun = dot(direction, light.to_sun);
-  float spread = smoothstep(kGlowEdge, kGlowFull, to_sun) / (kPi * (2.0 - kGlowEdge - kGlowFull));
-  vec3 glow = light.surface_irradiance * (light.direct_share / light.sun_cosine * spread);
-  if (direction.y < 1e-3 || depth_m <= 0.0) return vec3(0.0);
-  return mix(sky * kWaterIndex * kWaterIndex, mirrored, reflected) + glow;
-}
 
 // The glow of lamp i along the part_m of a sight, which passes it at distance_m, nearest_t from the eye.
 vec3 one_lamp_glow(uint i, vec3 from_lamp, vec3 direction, vec2 part_m, float nearest_t, float distance_m) {

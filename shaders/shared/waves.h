@@ -12,6 +12,8 @@ NERITIC_SHARED_BEGIN
 NERITIC_CONST uint kMaxWaves = 48;
 // Attenuation lengths of the clearest channel after which nothing is left of the surface.
 NERITIC_CONST float kSeaFaded = 9.0f;
+// Mean square slope of water without wind, both axes (Cox and Munk 1954, clean surface at 0 m/s).
+NERITIC_CONST float kCalmSlope2 = 0.003f;
 
 struct Wave {
   vec2 wave_number;  // 1/m, along world x and z: 2 pi over the wavelength
@@ -26,7 +28,8 @@ struct Waves {
   float fine_slope2;      // of the waves shorter than those of the sum, both axes
   float foam_height_m;    // crests above it are whitecaps
   vec2 foam_shift;        // of the whitecaps' pattern at the origin
-  float eye_height_m;     // of the surface over the first view's eye
+  float eye_height_m;     // of the surface over the first view's eye, and
+  vec2 eye_slope;         // its slopes there, along x and z
   Wave waves[kMaxWaves];  // from long to short
 };
 

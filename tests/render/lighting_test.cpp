@@ -27,6 +27,7 @@ TEST(Lighting, TermsAreExactlyWhatTheSceneNames) {
     if (water) wanted |= shared::kLightWater;
     if (water && scattering) wanted |= shared::kLightScattering;
     if (water && surface) wanted |= shared::kLightSurface;
+    if (sun && water && surface) wanted |= shared::kLightSunSeen;
     if (emission) wanted |= shared::kLightEmissive;
     EXPECT_EQ(light_of(scene, emission).terms, wanted) << bits;
     EXPECT_EQ(light_of(scene, emission).lamp_count, 0u) << bits;

@@ -359,6 +359,8 @@ TEST(GpuWaves, AreTheSameAsInDoubleNearTheOriginAndFarOut) {
         EXPECT_NEAR(sum.y, sea.slope(origin.x + x, origin.z + z, t).x, 2e-3);
       }
       EXPECT_NEAR(waves.eye_height_m, sea.height_m(origin.x, origin.z, t), 1e-5);
+      EXPECT_NEAR(waves.eye_slope.x, sea.slope(origin.x, origin.z, t).x, 1e-5);
+      EXPECT_NEAR(waves.eye_slope.y, sea.slope(origin.x, origin.z, t).y, 1e-5);
     }
   EXPECT_EQ(gpu_waves(SeaWaves({.wind_m_s = 0.0}), Vec3(0.0), 1.0).count, 0u);
 }

@@ -116,7 +116,7 @@ const std::map<std::string, Offsets>& shared_structs() {
       {"Waves",
        {MEMBER(Waves, count), MEMBER(Waves, height_rms_m), MEMBER(Waves, slope2),
         MEMBER(Waves, fine_slope2), MEMBER(Waves, foam_height_m), MEMBER(Waves, foam_shift),
-        MEMBER(Waves, eye_height_m), MEMBER(Waves, waves)}},
+        MEMBER(Waves, eye_height_m), MEMBER(Waves, eye_slope), MEMBER(Waves, waves)}},
       {"CameraParams",
        {MEMBER(CameraParams, model), MEMBER(CameraParams, k), MEMBER(CameraParams, p),
         MEMBER(CameraParams, port), MEMBER(CameraParams, port_offset),

@@ -407,6 +407,7 @@ TEST_F(WaterLight, SnellsWindowLetsInAllTheLight) {
   const View view{.water = "IB", .depth_m = 0.02, .face_m = 0.0, .pitch_rad = 0.5 * kPi};
   scene::Scene scene = scene_of(view);
   scene.water->surface = true;
+  scene.cameras[0].near_m = 0.005;  // its window is under water too
   constexpr std::uint32_t kSide = 201;
   scene.cameras[0].width = scene.cameras[0].height = kSide;
   scene.cameras[0].vertical_fov_rad = radians(110.0);
