@@ -106,20 +106,20 @@ float lit_at(ivec3 at, float planar_m) {
 }
 
 // The visibility image at a pixel: between its four nearest, the farther off in distance the less.
-Seen seen_at(ivec3 at, float planar_m) {
+Seen seen_at(ivec3 at, float planar_m, vec3 normal) {
   if (!light_has(kLightSeen)) return kAllSeen;
   ivec2 seen_size = textureSize(seen_image, 0).xy;
   // Its pixel (x, y) was made for the picture's kSeenStep times (x, y).
   vec2 place = vec2(at.xy) / float(kSeenStep);
   ivec2 corner = ivec2(place);
   vec2 part = place - vec2(corner);
-  float own = visibility_distance(planar_m);
+  float own = visibility_key(planar_m, normal, light.to_sun);
   vec4 sum = vec4(0.0);
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 offset = ivec2(i & 1, i >> 1);
     vec4 seen = texelFetch(seen_image, ivec3(min(corner + offset, seen_size - 1), at.z), 0);
     vec2 w = mix(1.0 - part, part, vec2(offset));
-    float weight = w.x * w.y * max(1.0 - abs(seen.a - own) * 40.0, 0.0) + 1e-5;
+    float weight = w.x * w.y * max(1.0 - abs(seen.a - own) * 80.0, 0.0) + 1e-5;
     sum += vec4(seen.rgb, 1.0) * weight;
   }
   sum.rgb /= sum.a;
@@ -167,7 +167,7 @@ void main() {
   s.reflectance = material.w;
   vec3 radiance = emitted;
   if (kSurfaces && material.w < 0.9) {
-    Seen seen = seen_at(at, planar_m);
+    Seen seen = seen_at(at, planar_m, s.normal);
     seen.caustic = caustic_at(s.position, planar_m * pixel_rad);
     radiance += shade_surface(s, -direction, seen);
   }  // else unlit

@@ -5,7 +5,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 // The share of the sun's beam (red), of the light round it (green) and of the surroundings (blue) that
-// reaches a surface; alpha: its distance. Taps of 16 neighbours differ, and the blur that follows joins them.
+// reaches a surface; alpha: its key (shared/visibility.glsl). Taps of 16 neighbours differ, and the blur that follows joins them.
 #include "shared/lighting.h"
 #include "shared/octahedral.h"
 #include "shared/visibility.glsl"
@@ -159,5 +159,5 @@ void main() {
   vec3 seen = vec3(1.0);
   if (kCascades > 0u) seen.xy -= sun_hidden(position, normal, max(params.origin_depth_m - position.y, 0.0), turn);
   if (kOcclusionTaps > 0u) seen.z -= occluded(layer, full, size, position, normal, planar_m, turn);
-  imageStore(out_image, at, vec4(seen, visibility_distance(planar_m)));
+  imageStore(out_image, at, vec4(seen, visibility_key(planar_m, normal, params.to_sun)));
 }

@@ -4,7 +4,8 @@
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The mean of the 4 x 4 pixels round one whose taps complete each other, but not across edges of distance.
+// The mean of the 4 x 4 pixels round one whose taps complete each other, but not across edges of distance, nor
+// between surfaces that face the sun and those that do not.
 #include "shared/lighting.h"
 #include "shared/visibility.h"
 
@@ -30,7 +31,7 @@ void main() {
       [[unroll]] for (int y = 0; y < 4; ++y)
         [[unroll]] for (int x = 0; x < 4; ++x) {
           vec4 seen = from[v + y][u + x];
-          float weight = max(1.0 - abs(seen.a - own.a) * 50.0, 0.0);
+          float weight = max(1.0 - abs(seen.a - own.a) * 100.0, 0.0);
           sum += vec4(seen.rgb, 1.0) * weight;
         }
       ivec3 at = first + ivec3(u, v, 0);
