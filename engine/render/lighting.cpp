@@ -114,9 +114,14 @@ double scene_illuminance_lx(const shared::Lighting& light, const scene::Scene& s
   return std::max({sum, lamps * 0.5, kDarkest_lx});
 }
 
-// Auto exposure where the water itself shines meters as cameras do: half of the picture water, half
-// ground of this albedo, whose mean becomes a mid-tone.
-constexpr double kMidTone = 0.20, kWaterShare = 0.5, kGround = 0.25;
+// Auto exposure where the water itself shines meters as cameras do, which expose for the water: the
+// mean of the logarithms of luminance over a picture of two thirds water and one third ground
+// becomes middle grey. A camera sees the ground through water: one that looks level over a bed h
+// below, with 60 degrees of view, from 2 h on; without a named bottom 3 m ahead, of this albedo.
+constexpr double kMiddleGrey = 0.18, kWaterShare = 2.0 / 3.0, kGround = 0.25, kGroundAhead_m = 3.0;
+// No water counts as darker than this, over ground beside the lens: the clearest by daylight has
+// 0.045. So a lamp's ground does not burn out before a black sea.
+constexpr double kLeastWater = 0.04;
 
 // Luminance of the water on a level sight at the origin's depth, the mean of four azimuths: what
 // look_through() of shaders/shared/water.glsl adds over an endless length.
@@ -147,6 +152,23 @@ double water_luminance(const shared::Lighting& light) {
     sum += kLuminance[i] * down * source / light.beam_attenuation[i];
   }
   return sum;
+}
+
+// What the metered picture's logarithms have for a mean: a luminance. water: that of the water.
+double metered_luminance(const shared::Lighting& light, double water, double illuminance_lx) {
+  const bool bottom = light.terms & shared::kLightAmbient;
+  const bool near = !bottom || light.bottom_depth_m < 0.0f;
+  const double away_m = near ? kGroundAhead_m
+                             : 2.0 * std::max(0.0, double(light.bottom_depth_m) -
+                                                       std::max(0.0f, light.origin_depth_m));
+  const double albedo = bottom ? glm::dot(kLuminance, Vec3(light.bottom_color)) : kGround;
+  double passed = 0.0;
+  for (int i = 0; i < 3; ++i)
+    passed += kLuminance[i] * std::exp(-light.beam_attenuation[i] * away_m);
+  const double beside = std::max(albedo, 0.05) * illuminance_lx / kPi;
+  water = std::max(water, kLeastWater * beside);
+  const double ground = beside * passed + water * (1.0 - passed);
+  return std::exp(kWaterShare * std::log(water) + (1.0 - kWaterShare) * std::log(ground));
 }
 
 // Beams that reach less than this past their lamp (in daylight, say) are not worth a term.
@@ -305,7 +327,7 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameSta
   const double illuminance = scene_illuminance_lx(light, scene, state.lights);
   double scale = kPi / illuminance;
   if (const double water = water_luminance(light); water > 0.0)
-    scale = kMidTone / (kWaterShare * water + (1.0 - kWaterShare) * kGround * illuminance / kPi);
+    scale = kMiddleGrey / metered_luminance(light, water, illuminance);
   if (exposure.fixed_ev) scale = std::exp2(-*exposure.fixed_ev);
   light.exposure = static_cast<float>(scale * std::exp2(exposure.compensation_ev));
   if (glows(light)) light.terms |= shared::kLightGlow;

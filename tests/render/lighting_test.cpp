@@ -34,6 +34,36 @@ TEST(Lighting, TermsAreExactlyWhatTheSceneNames) {
   }
 }
 
+// What the user names as stops is what counts, whatever the light.
+TEST(Lighting, AFixedExposureIsThatOfItsStopsAlone) {
+  scene::Scene scene;
+  scene.sun = scene::Sun{};
+  for (const bool water : {false, true}) {
+    if (water) scene.water = scene::Water{.type = "II", .scattering = true};
+    const auto light = make_lighting(scene, {}, Vec3(0.0, -8.0, 0.0),
+                                     {.compensation_ev = 1.0, .fixed_ev = 12.0}, false);
+    ASSERT_TRUE(light.ok());
+    EXPECT_EQ(light->exposure, std::exp2(-11.0f));
+  }
+}
+
+// Auto exposure is never off the light's scale, by lamps in the dark or in a bright shallow.
+TEST(Lighting, AutoExposureShowsGroundByLampsInABlackSeaAsBrightAsWhite) {
+  scene::Scene scene;
+  scene.sun = scene::Sun{.elevation_rad = radians(-20.0)};
+  scene.water = scene::Water{.type = "II", .scattering = true};
+  scene.lamps.resize(1);
+  scene.lamps[0].intensity_cd = 9000.0;
+  FrameState state;
+  state.world_from_lamp.resize(1);
+  const auto light = make_lighting(scene, state, Vec3(0.0, -3.0, 0.0), {}, false);
+  ASSERT_TRUE(light.ok());
+  // Half of the lamp's light at 3 m: 500 lx on ground of albedo 0.25.
+  const double ground = 0.25 * 500.0 / kPi * light->exposure;
+  EXPECT_GT(ground, 0.25);
+  EXPECT_LT(ground, 2.5);
+}
+
 TEST(Lighting, TermsHaveNamesForTheDump) {
   scene::Scene scene;
   EXPECT_EQ(names_of_terms(light_of(scene)), "");
