@@ -56,7 +56,7 @@ const vec3 kSiltAlbedo = vec3(0.42, 0.38, 0.30);
 float sphere_share(float cosine) { return (0.33 + 0.67 * (0.5 + 0.5 * cosine)) * 0.667 / kPi; }
 
 // beam: what of it comes straight from the sun.
-vec3 radiance_of(vec3 at, vec3 to_eye, vec3 albedo, out vec3 beam) {
+vec3 radiance_of(vec3 at, vec3 to_eye, vec3 albedo, float skylight, out vec3 beam) {
   vec3 sum = vec3(0.0);
   beam = vec3(0.0);
   if (light_has(kLightSun)) {
@@ -64,9 +64,11 @@ vec3 radiance_of(vec3 at, vec3 to_eye, vec3 albedo, out vec3 beam) {
     vec3 irradiance = downwelling(depth_m);
     vec3 direct = direct_share(depth_m);
     beam = irradiance * direct / light.sun_cosine * sphere_share(dot(light.to_sun, to_eye));
+    // The beam's core is the sun's maps' to stop.
+    beam *= mix(skylight, 1.0, core_share(depth_m));
     sum += beam;
     beam *= albedo;
-    sum += irradiance * (1.0 - direct) * sphere_share(to_eye.y) * 1.3;
+    sum += irradiance * (1.0 - direct) * sphere_share(to_eye.y) * 1.3 * skylight;
   }
   for (uint i = 0u; i < lamp_count(); ++i) {
     vec3 to_lamp = light.lamps[i].position - at;
@@ -82,19 +84,19 @@ vec3 radiance_of(vec3 at, vec3 to_eye, vec3 albedo, out vec3 beam) {
 
 // The light that a bubble mirrors and lets through: from the water about it, Snell's cone, sun and
 // lamp.
-void light_bubble(vec3 at, vec3 along, Sight sight) {
+void light_bubble(vec3 at, vec3 along, Sight sight, float skylight) {
   float depth_m = light.origin_depth_m - at.y;
   vec3 scale = sight.transmittance * light.exposure;
   vec3 level = normalize(vec3(along.x, 0.02 * sign(along.y), along.z) + vec3(1e-6, 0.0, 0.0));
-  level_light = look_through(depth_m, level, kForever_m).added * scale;
-  low_light = look_through(depth_m, vec3(0.0, -1.0, 0.0), kForever_m).added * scale;
+  level_light = look_through(depth_m, level, kForever_m, 1.0, skylight).added * scale;
+  low_light = look_through(depth_m, vec3(0.0, -1.0, 0.0), kForever_m, 1.0, skylight).added * scale;
   if (light_has(kLightSun)) {
     vec3 irradiance = downwelling(depth_m), direct = direct_share(depth_m);
     // Even light from within 48.6 degrees of the zenith: irradiance = pi sin^2 radiance.
-    window_light = irradiance * (1.0 - direct) * (kWaterIndex * kWaterIndex / kPi) * scale;
+    window_light = irradiance * (1.0 - direct) * (skylight * kWaterIndex * kWaterIndex / kPi) * scale;
     // The waves' spread of 10 degrees, and what the water has turned by small angles
     // (visibility.h).
-    sun_light = vec4(irradiance * direct / light.sun_cosine * scale,
+    sun_light = vec4(irradiance * direct / light.sun_cosine * scale * mix(skylight, 1.0, core_share(depth_m)),
                      0.03 + 0.02 * light.particle_scattering.g * max(depth_m, 0.0));
   }
   for (uint i = 0u; i < lamp_count(); ++i) {
@@ -122,7 +124,9 @@ void main() {
   shape = body = vec3(0.0);
   upright = along_sight = level_light = low_light = window_light = to_lamp = veil = vec3(0.0);
   sun_light = lamp_light = vec4(0.0);
-  kind = in_kind;
+  uint own_kind = in_kind.x & kParticleKindMask;
+  float skylight = 1.0 - float(in_kind.x >> kParticleShadeShift) / 255.0;
+  kind = uvec2(own_kind, in_kind.y);
   flatness = vec4(0.0);
   lit_at = vec4(in_position.xyz, core_share(light.origin_depth_m - in_position.y));
   if (!(now.w > views[view].near_m)) return;
@@ -148,14 +152,14 @@ void main() {
   float own = in_position.w * pow(aspect, -1.0 / 3.0) * pixels_m;
   float blur =
       0.5 * kLensOpening_m * abs(1.0 / now.w - 1.0 / kLensFocus_m) / length(views[view].ray_dx);
-  float radius = in_kind.x == kParticleSilt ? own : sqrt(own * own + blur * blur + 0.56);
+  float radius = own_kind == kParticleSilt ? own : sqrt(own * own + blur * blur + 0.56);
   // A spot's light is spread over its blur and its streak; snow's soft disk has half the light of a flat one.
-  float share = in_kind.x == kParticleSilt ? 1.0 : (in_kind.x == kParticleSnow ? 2.0 : 1.0) * own * own / (radius * radius) * (radius * kPi / (radius * kPi + 2.0 * streak));
-  vec3 albedo = in_kind.x == kParticleSilt ? kSiltAlbedo : kSnowAlbedo;
-  Sight sight = look_through(light.origin_depth_m - views[view].eye.y, -to_eye, distance_m);
+  float share = own_kind == kParticleSilt ? 1.0 : (own_kind == kParticleSnow ? 2.0 : 1.0) * own * own / (radius * radius) * (radius * kPi / (radius * kPi + 2.0 * streak));
+  vec3 albedo = own_kind == kParticleSilt ? kSiltAlbedo : kSnowAlbedo;
+  Sight sight = look_through(light.origin_depth_m - views[view].eye.y, -to_eye, distance_m, 1.0, skylight);
   if (kBubbles) {
     along_sight = -to_eye;
-    light_bubble(in_position.xyz, -to_eye, sight);
+    light_bubble(in_position.xyz, -to_eye, sight, skylight);
     // Seen at an angle to the level a flat bubble is rounder.
     float seen = sqrt(aspect * aspect * (1.0 - to_eye.y * to_eye.y) + to_eye.y * to_eye.y);
     // Upwards on the picture, tilted by its swing.
@@ -170,7 +174,7 @@ void main() {
                    seen);
   } else {
     vec3 beam;
-    body = (radiance_of(in_position.xyz, to_eye, albedo, beam) * sight.transmittance + sight.added) *
+    body = (radiance_of(in_position.xyz, to_eye, albedo, skylight, beam) * sight.transmittance + sight.added) *
            light.exposure;
     body = min(body, vec3(60000.0));
     sun_light.rgb = min(beam * sight.transmittance * light.exposure, vec3(60000.0));

@@ -30,6 +30,7 @@ layout(set = 0, binding = kShadeTiles, scalar) readonly buffer Tiles { uint tile
 layout(set = 0, binding = kShadeSeen) uniform texture2DArray seen_image;
 layout(set = 0, binding = kShadeCaustics) uniform sampler2DArray caustics_image;
 layout(set = 0, binding = kShadeShafts) uniform texture2DArray shafts_image;
+layout(set = 0, binding = kShadeSkylight) uniform texture2DArray skylight_image;
 layout(set = 0, binding = kShadeLampMaps) uniform texture2DArray lamp_maps;
 layout(set = 0, binding = kShadeLampShadows, scalar) uniform Shadows { LampShadows lamp_shadow_data; };
 
@@ -48,6 +49,7 @@ uint glow_samples() { return kGlowSamples; }
 #include "shared/even_light.glsl"
 #include "shared/caustic_light.glsl"
 #include "shared/shafts.h"
+#include "shared/skylight.h"
 #include "shared/shaft_texel.glsl"
 #include "shared/surface.glsl"
 #include "shared/sea_surface.glsl"
@@ -105,25 +107,39 @@ float lit_at(ivec3 at, float planar_m) {
   return sum.x / sum.y;
 }
 
-// The visibility image at a pixel: between its four nearest, the farther off in distance the less.
-Seen seen_at(ivec3 at, float planar_m, vec3 normal) {
-  if (!light_has(kLightSeen)) return kAllSeen;
-  ivec2 seen_size = textureSize(seen_image, 0).xy;
-  // Its pixel (x, y) was made for the picture's kSeenStep times (x, y).
-  vec2 place = vec2(at.xy) / float(kSeenStep);
+// An image made for one pixel of every `step` a side, at a pixel: between its four nearest, the less the farther
+// their keys (alpha) are from its own.
+vec3 from_coarser(texture2DArray image, float step, ivec3 at, float own) {
+  ivec2 last = textureSize(image, 0).xy - 1;
+  // Its pixel (x, y) was made for the picture's step times (x, y).
+  vec2 place = vec2(at.xy) / step;
   ivec2 corner = ivec2(place);
   vec2 part = place - vec2(corner);
-  float own = visibility_key(planar_m, normal, light.to_sun);
   vec4 sum = vec4(0.0);
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 offset = ivec2(i & 1, i >> 1);
-    vec4 seen = texelFetch(seen_image, ivec3(min(corner + offset, seen_size - 1), at.z), 0);
+    vec4 texel = texelFetch(image, ivec3(min(corner + offset, last), at.z), 0);
     vec2 w = mix(1.0 - part, part, vec2(offset));
-    float weight = w.x * w.y * max(1.0 - abs(seen.a - own) * 80.0, 0.0) + 1e-5;
-    sum += vec4(seen.rgb, 1.0) * weight;
+    float weight = w.x * w.y * max(1.0 - abs(texel.a - own) * 80.0, 0.0) + 1e-5;
+    sum += vec4(texel.rgb, 1.0) * weight;
   }
-  sum.rgb /= sum.a;
-  return Seen(sum.r, sum.g, sum.b, 1.0);
+  return sum.rgb / sum.a;
+}
+
+Seen seen_at(ivec3 at, float planar_m, vec3 normal) {
+  Seen seen = kAllSeen;
+  if (!light_has(kLightSeen)) return seen;
+  vec3 shares = from_coarser(seen_image, float(kSeenStep), at, visibility_key(planar_m, normal, light.to_sun));
+  seen.sun = shares.r;
+  seen.sky = shares.g;
+  seen.around = shares.b;
+  return seen;
+}
+
+// Along the sight, and at its end.
+vec2 skylight_at(ivec3 at, float planar_m) {
+  if (!light_has(kLightSkylight)) return vec2(1.0);
+  return from_coarser(skylight_image, float(kSkylightStep), at, 0.5 * visibility_distance(planar_m)).rg;
 }
 
 void main() {
@@ -166,9 +182,11 @@ void main() {
   s.occlusion = material.z;
   s.reflectance = material.w;
   vec3 radiance = emitted;
+  vec2 skylight = skylight_at(at, hit ? planar_m : kForever_m);
   if (kSurfaces && material.w < 0.9) {
     Seen seen = seen_at(at, planar_m, s.normal);
     seen.caustic = caustic_at(s.position, planar_m * pixel_rad);
+    seen.skylight = skylight.y;
     radiance += shade_surface(s, -direction, seen);
   }  // else unlit
   float sight_m = hit ? planar_m * stretch : kForever_m;
@@ -196,7 +214,7 @@ void main() {
   } else if (!hit) {
     radiance = light_has(kLightWater) ? vec3(0.0) : light.background;
   }
-  Sight sight = look_through(eye_depth_m, direction, sight_m, lit_at(at, planar_m));
+  Sight sight = look_through(eye_depth_m, direction, sight_m, lit_at(at, planar_m), skylight.x);
   if (light_has(kLightForwardScatter)) {
     // How much lighter than the water there, with what scatters forwards on the way, and the distance.
     vec3 kept = (radiance - sight.water) * kept_forwards(sight.length_m) * light.exposure;

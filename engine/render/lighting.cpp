@@ -353,7 +353,8 @@ std::string names_of_terms(const shared::Lighting& lighting) {
       {shared::kLightMurk, "murk"},
       {shared::kLightShafts, "light shafts"},
       {shared::kLightProfiles, "beam profiles"},
-      {shared::kLightSunSeen, "the sun's image"}};
+      {shared::kLightSunSeen, "the sun's image"},
+      {shared::kLightSkylight, "skylight"}};
   std::vector<std::string> names;
   for (const auto& [bit, name] : kNames)
     if (lighting.terms & bit) names.emplace_back(name);

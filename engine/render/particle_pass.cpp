@@ -31,8 +31,10 @@ Result<graph::ImageHandle> WaterPasses::declare_particles(
   }
   const std::vector<std::uint32_t> masks = view_masks_of(gbuffer.layers, device_);
   const auto bubbles = static_cast<std::uint32_t>(
-      std::ranges::find_if(
-          particles, [](const shared::Particle& p) { return p.kind != shared::kParticleBubble; }) -
+      std::ranges::find_if(particles,
+                           [](const shared::Particle& p) {
+                             return (p.kind & shared::kParticleKindMask) != shared::kParticleBubble;
+                           }) -
       particles.begin());
   const std::uint32_t others = static_cast<std::uint32_t>(particles.size()) - bubbles;
   for (const std::uint32_t mask : masks)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/random.hpp"
+#include "engine/render/skylight.hpp"
 #include "engine/render/snow_field.hpp"
 #include "shared/bubble.h"
 
@@ -71,7 +72,7 @@ bool has_particles(const scene::Scene& scene) {
 
 ViewParticles view_particles(const scene::MotionSource& motion, SnowField& field,
                              std::uint64_t seed, const ViewSet& views, double time_s,
-                             double snow_share, double spot_px) {
+                             double snow_share, double spot_px, const SkylightGrid* skylight) {
   ViewParticles out;
   // The phase of bubbles' wobble now, in 256ths of a turn.
   const double swings = time_s * shared::kWobble_hz;
@@ -113,6 +114,12 @@ ViewParticles view_particles(const scene::MotionSource& motion, SnowField& field
     out.particles.insert(out.particles.end(), placed.begin() + std::ptrdiff_t(some.first),
                          placed.begin() + std::ptrdiff_t(some.first + some.count));
   if (spot_px > 0.0) thin_out(out.particles, spot_px, pixels_at_a_metre(views));
+  if (skylight)
+    for (shared::Particle& particle : out.particles) {
+      const double open = skylight->at(sight.origin_m() + Vec3(particle.position));
+      particle.kind |= static_cast<std::uint32_t>(std::lround(255.0 * (1.0 - open)))
+                       << shared::kParticleShadeShift;
+    }
   return out;
 }
 

@@ -12,6 +12,7 @@
 namespace neritic::render {
 
 class SnowField;
+struct SkylightGrid;
 
 // A particle in the world.
 struct WorldParticle {
@@ -49,9 +50,10 @@ struct ViewParticles {
 bool has_particles(const scene::Scene& scene);
 // field: the snow's cells, kept from call to call. spot_px: those of a smaller radius in the
 // picture are drawn in part (at least a quarter of them), each as much more opaque; 0: all are
-// drawn.
+// drawn. skylight: dims those that it leaves in the dark; nullptr: none.
 ViewParticles view_particles(const scene::MotionSource& motion, SnowField& field,
                              std::uint64_t seed, const ViewSet& views, double time_s,
-                             double snow_share = 1.0, double spot_px = 0.0);
+                             double snow_share = 1.0, double spot_px = 0.0,
+                             const SkylightGrid* skylight = nullptr);
 
 }  // namespace neritic::render

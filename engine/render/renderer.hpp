@@ -25,6 +25,7 @@
 #include "shared/exposure.h"
 #include "shared/lighting.h"
 #include "shared/shafts.h"
+#include "shared/skylight.h"
 #include "shared/waves.h"
 
 namespace neritic::render {
@@ -77,6 +78,12 @@ struct ShaftInputs {
   shared::ShaftParams params{};
 };
 
+// Inputs of skylight: its grid's cells as floats (engine/render/skylight.hpp), and where they lie.
+struct SkylightInputs {
+  const gpu::Buffer* grid = nullptr;
+  shared::SkylightParams params{};
+};
+
 // Images of what stands in the light's way to the surfaces of one view set. A handle is empty where
 // the scene does not name the term.
 struct LightImages {
@@ -84,6 +91,7 @@ struct LightImages {
   graph::ImageHandle caustics;
   graph::ImageHandle shafts;                // of the sun's light in the water (shaders/shafts.comp)
   std::optional<ShaftInputs> shaft_inputs;  // where there are shafts: what lights particles too
+  graph::ImageHandle skylight;  // of the light from above (shaders/skylight.comp)
   graph::ImageHandle lamp_maps;
   shared::LampShadows lamp_shadows{};  // of lamp_maps
 };
@@ -175,6 +183,12 @@ class Renderer {
                                             const GBuffer& gbuffer, const ViewSet& views,
                                             const shared::Lighting& lighting,
                                             const ShaftInputs& inputs);
+  // How much of the light from above still things let through to sights and their ends, a pixel of
+  // every kSkylightStep.
+  Result<graph::ImageHandle> declare_skylight(graph::FrameGraph& graph, const std::string& prefix,
+                                              const GBuffer& gbuffer, const ViewSet& views,
+                                              const shared::Lighting& lighting,
+                                              const SkylightInputs& inputs);
   // HDR picture of a surface G-buffer.
   Result<graph::ImageHandle> declare_shade(graph::FrameGraph& graph, const std::string& prefix,
                                            const ShadeInputs& inputs);
@@ -238,6 +252,11 @@ class Renderer {
                                             const PictureFilter& filter, gpu::Pipeline& pipeline,
                                             graph::ImageHandle in, std::uint32_t width,
                                             std::uint32_t height, std::uint32_t layers);
+  // The mean of each 4 x 4 pixels of an image of shares, whose alpha tells distances.
+  Result<graph::ImageHandle> declare_visibility_blur(graph::FrameGraph& graph,
+                                                     const std::string& name,
+                                                     graph::ImageHandle in, std::uint32_t width,
+                                                     std::uint32_t height, std::uint32_t layers);
   // Focus or shutter: a picture, another image of the G-buffer, and numbers.
   template <class Params>
   Result<graph::ImageHandle> declare_exposure(graph::FrameGraph& graph, const std::string& prefix,
@@ -305,6 +324,7 @@ class Renderer {
   gpu::Pipeline visibility_blur_, caustics_, caustics_resolve_, shade_tiles_;
   // By terms and number of the sun's maps.
   std::map<std::array<std::uint32_t, 2>, gpu::Pipeline> shafts_;
+  std::map<std::uint32_t, gpu::Pipeline> skylight_;  // by terms
   gpu::Pipeline shafts_blur_, focus_, shutter_;
   gpu::Pipeline band_albedo_;
   std::map<std::uint32_t, gpu::Pipeline> merge_;             // by pictures

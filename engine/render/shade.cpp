@@ -119,6 +119,7 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
                             {shared::kShadeLampShadows, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
                             {shared::kShadeScattered, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
                             {shared::kShadeWaves, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+                            {shared::kShadeSkylight, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
                             {shared::kShadeTiles, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
     desc.constants = {{shared::kSpecTerms, lighting.terms},
                       {shared::kSpecLamps, lighting.lamp_count},
@@ -139,7 +140,7 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
         builder.terms(names_of_terms(lighting));
         for (const graph::ImageHandle handle :
              {gbuffer.depth, gbuffer.normal, gbuffer.albedo, gbuffer.material, gbuffer.emissive,
-              light.seen, light.caustics, light.shafts, light.lamp_maps})
+              light.seen, light.caustics, light.shafts, light.skylight, light.lamp_maps})
           if (handle) builder.read(handle, graph::Access::kSampledCompute);
         if (tiles) {
           builder.read(tiles, graph::Access::kIndirectBuffer);
@@ -188,6 +189,7 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
                 context.image(light.caustics ? light.caustics : gbuffer.albedo).view(),
                 tile_sampler_.handle()),
             texels(shared::kShadeShafts, light.shafts ? light.shafts : gbuffer.albedo),
+            texels(shared::kShadeSkylight, light.skylight ? light.skylight : gbuffer.albedo),
             texels(shared::kShadeLampMaps, light.lamp_maps ? light.lamp_maps : gbuffer.depth),
             gpu::bound_buffer(shared::kShadeLampShadows, shadow_data.buffer, shadow_data.offset,
                               shadow_data.size),

@@ -32,14 +32,6 @@ Result<graph::ImageHandle> Renderer::declare_visibility(
                       {shared::kSpecShadowTaps, knobs.shadow_samples}};
     NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
   }
-  if (!visibility_blur_) {
-    gpu::ComputePipelineDesc desc;
-    desc.name = "visibility blur";
-    desc.code = shaders::kVisibilityBlurComp;
-    desc.layout.bindings = {{shared::kVisibilityBlurIn, kTexels},
-                            {shared::kVisibilityBlurOut, kStorageImage}};
-    NERITIC_TRY(visibility_blur_, gpu::Pipeline::create(device_, desc));
-  }
   const std::uint32_t width = (gbuffer.width + scale - 1) / scale,
                       height = (gbuffer.height + scale - 1) / scale;
   struct Data {
@@ -76,17 +68,32 @@ Result<graph::ImageHandle> Renderer::declare_visibility(
              gpu::bound_storage_image(shared::kVisibilityOut, context.image(data.out).view())});
         commands.dispatch(groups(width), groups(height), gbuffer.layers);
       });
+  return declare_visibility_blur(graph, prefix + "visibility", taps.out, width, height,
+                                 gbuffer.layers);
+}
+
+Result<graph::ImageHandle> Renderer::declare_visibility_blur(
+    graph::FrameGraph& graph, const std::string& name, graph::ImageHandle in, std::uint32_t width,
+    std::uint32_t height, std::uint32_t layers) {
+  if (!visibility_blur_) {
+    gpu::ComputePipelineDesc desc;
+    desc.name = "visibility blur";
+    desc.code = shaders::kVisibilityBlurComp;
+    desc.layout.bindings = {{shared::kVisibilityBlurIn, kTexels},
+                            {shared::kVisibilityBlurOut, kStorageImage}};
+    NERITIC_TRY(visibility_blur_, gpu::Pipeline::create(device_, desc));
+  }
+  struct Data {
+    graph::ImageHandle out;
+  };
   const Data& blurred = graph.add_pass<Data>(
-      prefix + "visibility blur",
+      name + " blur",
       [&](graph::PassBuilder& builder, Data& data) {
-        builder.read(taps.out, graph::Access::kSampledCompute);
-        data.out =
-            builder.write(builder.create_image(prefix + "visibility",
-                                               {kColorFormat, width, height, gbuffer.layers}),
-                          graph::Access::kStorageWriteCompute);
+        builder.read(in, graph::Access::kSampledCompute);
+        data.out = builder.write(builder.create_image(name, {kColorFormat, width, height, layers}),
+                                 graph::Access::kStorageWriteCompute);
       },
-      [this, in = taps.out, width, height, layers = gbuffer.layers](const Data& data,
-                                                                    graph::PassContext& context) {
+      [this, in, width, height, layers](const Data& data, graph::PassContext& context) {
         context.commands.bind_pipeline(visibility_blur_);
         context.commands.bind(
             visibility_blur_,

@@ -2,6 +2,7 @@
 // shafts. Each is absent unless it is named. Plain values.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -19,12 +20,24 @@ struct SunShadows {
   bool full_resolution = false;
 };
 
+// [ambient.skylight]: in this box, what stands still takes away light that comes from above, on
+// surfaces and in the water: caves, holds, the shade under a quay.
+struct Skylight {
+  Vec3 low_m{0.0}, high_m{0.0};  // opposite corners
+  double cell_m = 0.4;
+  std::uint32_t samples = 8;  // along a sight
+};
+// Cells along x, y and z, at least one.
+std::array<std::uint32_t, 3> cells_of(const Skylight& skylight);
+inline constexpr double kMostSkylightCells = 4e6;
+
 // [ambient]: light from around. Upwards comes what the bottom sends back.
 struct Ambient {
   Vec3f bottom_color{0.30f, 0.28f, 0.22f};  // linear; light sand
   std::optional<double> bottom_depth_m;     // absent: as near as the surface that is lit
   double occlusion_m = 0.0;                 // reach of ambient occlusion; 0: none
   std::uint32_t occlusion_samples = 8;
+  std::optional<Skylight> skylight = {};
 };
 
 inline constexpr std::size_t kMostCausticWaves = 32;

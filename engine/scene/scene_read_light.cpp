@@ -1,4 +1,5 @@
-// Reads [sun] and its shadows, and [ambient].
+// Reads [sun] with its terms, and [ambient] with its own.
+#include <algorithm>
 #include <cmath>
 
 #include "engine/core/refusal.hpp"
@@ -46,6 +47,25 @@ Shafts read_shafts(TableReader& reader) {
   return shafts;
 }
 
+Skylight read_skylight(TableReader& reader) {
+  Skylight skylight;
+  const std::vector<double> box = reader.numbers("box_m", {6}, {-1e5, 1e5});
+  if (box.empty()) {
+    reader.refuse("box_m", "[x, y, z, x, y, z], two opposite corners");
+    return skylight;
+  }
+  const Vec3 a(box[0], box[1], box[2]), b(box[3], box[4], box[5]);
+  skylight.low_m = glm::min(a, b);
+  skylight.high_m = glm::max(a, b);
+  skylight.cell_m = reader.number("cell_m", skylight.cell_m, {0.05, 100, false, false, "metres"});
+  skylight.samples = static_cast<std::uint32_t>(reader.whole("samples", skylight.samples, 1, 64));
+  const Vec3 cells = glm::ceil((skylight.high_m - skylight.low_m) / skylight.cell_m);
+  if (!(cells.x * cells.y * cells.z >= 1.0) || !(cells.x * cells.y * cells.z <= kMostSkylightCells))
+    reader.refuse("box_m", fmt::format("a box of 1 to {:g} cells of cell_m; this one has {:g}",
+                                       kMostSkylightCells, cells.x * cells.y * cells.z));
+  return skylight;
+}
+
 // By elevation and azimuth, or by latitude, day and hour.
 void read_place_of_sun(TableReader& reader, Sun& sun) {
   const bool by_time = reader.has("latitude_deg") || reader.has("day") || reader.has("hour");
@@ -67,6 +87,14 @@ void read_place_of_sun(TableReader& reader, Sun& sun) {
 }
 
 }  // namespace
+
+std::array<std::uint32_t, 3> cells_of(const Skylight& skylight) {
+  const Vec3 cells = glm::ceil((skylight.high_m - skylight.low_m) / skylight.cell_m);
+  std::array<std::uint32_t, 3> out{};
+  for (int i = 0; i < 3; ++i)
+    out[static_cast<std::size_t>(i)] = static_cast<std::uint32_t>(std::max(cells[i], 1.0));
+  return out;
+}
 
 Result<Sun> read_sun(const SceneSource& source, const TomlValue& table) {
   TableReader reader(source, table, "sun", kSunKeys);
@@ -107,6 +135,7 @@ Result<Ambient> read_ambient(const SceneSource& source, const TomlValue& table) 
       static_cast<std::uint32_t>(reader.whole("occlusion_samples", 8, 4, 64));
   if (reader.has("occlusion_samples") && ambient.occlusion_m == 0.0)
     reader.refuse("occlusion_samples", "beside an occlusion_m above 0");
+  ambient.skylight = read_term<Skylight>(reader, "skylight", kSkylightKeys, read_skylight);
   NERITIC_TRY_STATUS(reader.status());
   return ambient;
 }

@@ -9,6 +9,9 @@ NERITIC_SHARED_BEGIN
 NERITIC_CONST uint kParticleSnow = 0;
 NERITIC_CONST uint kParticleBubble = 1;
 NERITIC_CONST uint kParticleSilt = 2;
+// A kind's higher bits: 255ths of the light from above that is kept from it.
+NERITIC_CONST uint kParticleShadeShift = 8;
+NERITIC_CONST uint kParticleKindMask = 255;
 
 struct Particle {
   vec3 position;  // relative to the view set's origin

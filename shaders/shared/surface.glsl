@@ -67,9 +67,10 @@ struct Seen {
   float sun;
   float sky;
   float around;
-  float caustic;  // the beam's light over that under flat water
+  float caustic;   // the beam's light over that under flat water
+  float skylight;  // of the light from above, what the still surroundings let through
 };
-const Seen kAllSeen = Seen(1.0, 1.0, 1.0, 1.0);
+const Seen kAllSeen = Seen(1.0, 1.0, 1.0, 1.0, 1.0);
 // Share of a lamp that the place sees. The including file defines it.
 float lamp_seen(uint lamp, vec3 position, vec3 normal);
 
@@ -84,7 +85,8 @@ vec3 shade_surface(Surface s, vec3 to_eye, Seen seen) {
     // (slopes of Cox and Munk 1954 at a light breeze).
     float sun_spread = light_has(kLightWater) ? 0.17 : 0.0047;
     vec3 beam = irradiance * direct / light.sun_cosine;
-    if (light_has(kLightSeen)) beam *= mix(seen.sky, seen.sun, core_share(depth_m));
+    if (light_has(kLightSeen) || light_has(kLightSkylight))
+      beam *= mix(min(seen.sky, seen.skylight), seen.sun, core_share(depth_m));
     if (light_has(kLightCaustics)) beam *= seen.caustic;
     radiance += beam * reflect_light(s, to_eye, light.to_sun, sun_spread);
     // Diffuse light comes mostly from above.
@@ -95,7 +97,7 @@ vec3 shade_surface(Surface s, vec3 to_eye, Seen seen) {
     vec3 around = irradiance * (1.0 - direct) * mix(from_below, 1.0, above);
     if (light_has(kLightAmbient))
       around = irradiance * ((1.0 - direct) * above * seen.sky + (from_bottom(depth_m) + 0.02) * (1.0 - above));
-    radiance += around * s.occlusion * seen.around * diffuse_color / kPi;
+    radiance += around * s.occlusion * seen.around * seen.skylight * diffuse_color / kPi;
   }
   NERITIC_OVER_LAMPS {
     vec3 to_lamp = light.lamps[i].position - s.position;

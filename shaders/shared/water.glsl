@@ -61,8 +61,9 @@ float beam_of(uint i, float cosine) {
 }
 
 // Radiance that a metre of water adds along a sight in the unit direction, 1/m, where irradiance
-// comes down and the share direct of it still in the sun's beam, of which the share lit gets there.
-vec3 scattered_towards(vec3 direction, vec3 irradiance, vec3 direct, float lit) {
+// comes down and the share direct of it still in the sun's beam, of which the share lit gets there, and of
+// the rest the share skylight.
+vec3 scattered_towards(vec3 direction, vec3 irradiance, vec3 direct, float lit, float skylight) {
   // The scattering angle is between the light's travel and the way to the eye, so its cosine is
   // that of the view direction and the direction to the sun.
   float to_sun = dot(direction, light.to_sun);
@@ -71,11 +72,11 @@ vec3 scattered_towards(vec3 direction, vec3 irradiance, vec3 direct, float lit) 
   vec3 from_diffuse = light.particle_scattering * henyey_greenstein(direction.y, kDiffuseG) +
                       light.water_scattering * sea_water_phase(direction.y);
   return irradiance * (direct * lit * from_beam / light.sun_cosine +
-                       (1.0 - direct) * from_diffuse / kDiffuseCosine);
+                       skylight * (1.0 - direct) * from_diffuse / kDiffuseCosine);
 }
 
 vec3 scattered_towards(vec3 direction, vec3 irradiance, vec3 direct) {
-  return scattered_towards(direction, irradiance, direct, 1.0);
+  return scattered_towards(direction, irradiance, direct, 1.0, 1.0);
 }
 
 // The part of a straight sight that lies in water: metres from its start at which it begins and ends.
@@ -125,8 +126,9 @@ vec3 kept_forwards(float length_m) {
 }
 
 // From a point at depth_m along the unit direction (world axes) for length_m (may be infinite).
-// lit: share of the sun's beam that reaches the water on the way (shafts.comp).
-Sight look_through(float depth_m, vec3 direction, float length_m, float lit) {
+// lit: share of the sun's beam that reaches the water on the way (shafts.comp); skylight: of the light round
+// it (skylight.comp).
+Sight look_through(float depth_m, vec3 direction, float length_m, float lit, float skylight) {
   Sight sight;
   sight.transmittance = vec3(1.0);
   sight.added = vec3(0.0);
@@ -144,11 +146,15 @@ Sight look_through(float depth_m, vec3 direction, float length_m, float lit) {
   // Exponents beyond 80 are as good as infinite and keep inf * 0 out.
   sight.transmittance = exp(-min(light.beam_attenuation * murky_m, vec3(80.0)));
   if (!light_has(kLightScattering) || !light_has(kLightSun)) return sight;
-  vec3 source = scattered_towards(direction, downwelling(depth_m), direct_share(depth_m), lit);
+  // What is scattered out of the beam's core comes from all about, as skylight does.
+  if (light_has(kLightSkylight))
+    lit = max(lit - (1.0 - core_share(depth_m)) * (1.0 - skylight), 0.0);
+  vec3 source =
+      scattered_towards(direction, downwelling(depth_m), direct_share(depth_m), lit, skylight);
   if (light_has(kLightAmbient) && light.bottom_depth_m >= 0.0) {
     // The bottom shines evenly from below; of its light a level sight is sent half, one that looks down, along
     // which it travels forwards, nearly all.
-    vec3 upwards = downwelling(depth_m) * from_bottom(depth_m) / kPi;
+    vec3 upwards = downwelling(depth_m) * from_bottom(depth_m) * (skylight / kPi);
     source += upwards * (light.particle_scattering + light.water_scattering) * (0.5 - 0.45 * direction.y);
   }
   // Integral of source * exp(-(c + K_d down) s) over the length; down is the sine of the dive angle.
@@ -166,7 +172,7 @@ Sight look_through(float depth_m, vec3 direction, float length_m, float lit) {
 }
 
 Sight look_through(float depth_m, vec3 direction, float length_m) {
-  return look_through(depth_m, direction, length_m, 1.0);
+  return look_through(depth_m, direction, length_m, 1.0, 1.0);
 }
 
 // Longer than any sight in water, m.

@@ -46,6 +46,7 @@ std::uint64_t term_bytes(const scene::Scene& scene) {
   std::uint64_t bytes = 0;
   if ((scene.sun && scene.sun->shadows) || (scene.ambient && scene.ambient->occlusion_m > 0.0))
     bytes += 8;
+  if (scene.ambient && scene.ambient->skylight) bytes += 1;
   if (scene.water && scene.water->forward_scatter) bytes += 9;
   return bytes;
 }
@@ -63,6 +64,11 @@ std::uint64_t shared_light_bytes(const scene::Scene& scene) {
     const std::uint64_t texels = scene.sun->caustics->texels;
     // Sums of all levels, and layers of halves.
     bytes += texels * texels * (4 * shared::kCausticLevels + 8 * shared::kCausticLayers);
+  }
+  // The grid at the host and at the device, and what light goes through while it is made.
+  if (scene.ambient && scene.ambient->skylight) {
+    const auto [nx, ny, nz] = scene::cells_of(*scene.ambient->skylight);
+    bytes += std::uint64_t{20} * nx * ny * nz;
   }
   return bytes;
 }

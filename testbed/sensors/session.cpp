@@ -52,6 +52,7 @@ Result<std::unique_ptr<Session>> Session::create(gpu::Device& device, scene::Sce
                                                             session->renderer_->material_layout()));
   NERITIC_TRY(EchoTables tables, EchoTables::create(device, session->scene_));
   session->sun_maps_ = std::make_unique<SunMaps>();
+  session->skylight_ = std::make_unique<Skylight>();
   session->snow_ = std::make_unique<render::SnowField>();
   session->moving_ = render::moving_objects(session->scene_);
   for (const std::uint8_t moves : session->moving_) session->still_.push_back(moves ? 0 : 1);
@@ -156,6 +157,7 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
                          work.state,    deformed,
                          readback_,     request.seed.value_or(scene_.seed),
                          work.light,    *sun_maps_,
+                         *skylight_,
                          moving_,       still_,
                          request.frame, work.deform_need,
                          *snow_};

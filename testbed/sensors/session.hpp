@@ -26,6 +26,7 @@ namespace neritic::testbed {
 struct EchoTables;
 class SonarSensor;
 class SunMaps;
+class Skylight;
 
 class Session {
  public:
@@ -79,6 +80,7 @@ class Session {
   std::map<std::size_t, std::vector<glm::dvec2>> lens_maps_;  // by camera, as far as asked for
   ReadbackPool readback_;
   std::unique_ptr<SunMaps> sun_maps_;
+  std::unique_ptr<Skylight> skylight_;
   std::unique_ptr<render::SnowField> snow_;
   std::vector<std::uint8_t> moving_, still_;  // flags by object
   std::vector<double> lamp_cd_;  // of lamps at their full intensity, once one was dimmed

@@ -55,11 +55,7 @@ Result<graph::ImageHandle> SunMaps::declare(const FrameParts& frame, const std::
                                    .least_px = work.mesh_error_px > 0.0 ? kLeastCaster_px : 0.0,
                                    .deform_need = &frame.deform_need};
   };
-  FrameLight& light = frame.light;
-  if (!light.still_known) {
-    light.still_known = true;
-    light.still = render::still_hash(frame.state, frame.moving);
-  }
+  const std::uint64_t still = frame.light.still_of(frame);
   // Every frame leaves all layers as shading reads them; before the first they have no content.
   const bool fresh = std::ranges::all_of(kept.drawn, [](std::uint64_t d) { return d == 0; });
   const graph::ImageHandle image = frame.graph.import_image(
@@ -70,7 +66,7 @@ Result<graph::ImageHandle> SunMaps::declare(const FrameParts& frame, const std::
   std::vector<std::uint32_t> stale_layers;
   std::vector<std::uint64_t> content;
   for (std::uint32_t i = 0; i < layers; ++i) {
-    content.push_back(content_of(light.still, work.cascades[i], work.mesh_error_px));
+    content.push_back(content_of(still, work.cascades[i], work.mesh_error_px));
     if (kept.drawn[i] == content[i]) continue;
     stale.push_back(work.cascades[i]);
     stale_layers.push_back(i);

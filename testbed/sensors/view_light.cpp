@@ -97,7 +97,35 @@ Status declare_shafts(const FrameParts& frame, const std::string& prefix, const 
   return {};
 }
 
+// What stands still in the way of the light from above.
+Status declare_skylight(const FrameParts& frame, const std::string& prefix,
+                        const render::GBuffer& g, const render::ViewSet& views,
+                        const scene::PictureDetail& detail, shared::Lighting& lighting,
+                        render::LightImages& light) {
+  if (!(lighting.terms & shared::kLightSun)) return {};
+  NERITIC_TRY(const render::SkylightGrid* const grid, frame.skylight.grid(frame));
+  if (!grid) return {};
+  lighting.terms |= shared::kLightSkylight;
+  const std::uint32_t samples = frame.scene.ambient->skylight->samples;
+  NERITIC_TRY(light.skylight,
+              frame.renderer.declare_skylight(
+                  frame.graph, prefix, g, views, lighting,
+                  {.grid = &frame.skylight.cells(),
+                   .params = {.low = Vec3f(grid->low_m - views.origin_m()),
+                              .cell_m = static_cast<float>(grid->cell_m),
+                              .nx = grid->nx,
+                              .ny = grid->ny,
+                              .nz = grid->nz,
+                              .samples = times(samples, detail.shaft_samples, 1, 256)}}));
+  return {};
+}
+
 }  // namespace
+
+std::uint64_t FrameLight::still_of(const FrameParts& frame) {
+  if (!still_) still_ = render::still_hash(frame.state, frame.moving);
+  return *still_;
+}
 
 std::uint32_t visibility_step(const scene::Scene& scene, const scene::PictureDetail& detail) {
   const bool full = scene.sun && scene.sun->shadows && scene.sun->shadows->full_resolution;
@@ -129,6 +157,7 @@ Result<render::LightImages> declare_light(const FrameParts& frame, const std::st
   NERITIC_TRY_STATUS(declare_shared_light(frame, work, draws, detail, lighting, light));
   NERITIC_TRY_STATUS(
       declare_shafts(frame, prefix, g, views, detail, work, cascades, lighting, light));
+  NERITIC_TRY_STATUS(declare_skylight(frame, prefix, g, views, detail, lighting, light));
   if (!cascades && knobs.occlusion_taps == 0) return light;
   lighting.terms |= shared::kLightSeen;
   NERITIC_TRY(light.seen, frame.renderer.declare_visibility(

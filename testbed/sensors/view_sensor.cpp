@@ -246,10 +246,15 @@ Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::str
   NERITIC_TRY(const render::LightImages light,
               declare_light(frame, prefix, g, views, draws, detail, work, lighting));
   // Once for all bands: the passes borrow them until the graph has run.
-  if (render::has_particles(frame.scene))
-    work.particles =
-        render::view_particles(frame.motion, frame.snow, frame.scene.seed, views,
-                               frame.state.time_s, detail.particles, request.thrift.spot_px);
+  if (render::has_particles(frame.scene)) {
+    const render::SkylightGrid* skylight = nullptr;
+    if (lighting.terms & shared::kLightSkylight) {
+      NERITIC_TRY(skylight, frame.skylight.grid(frame));
+    }
+    work.particles = render::view_particles(frame.motion, frame.snow, frame.scene.seed, views,
+                                            frame.state.time_s, detail.particles,
+                                            request.thrift.spot_px, skylight);
+  }
   NERITIC_TRY(graph::ImageHandle hdr,
               request.camera && request.camera->terms.spectrum
                   ? declare_spectrum(frame, prefix, g, views, draws, request, work, lighting, light)

@@ -15,9 +15,12 @@
 #include "testbed/sensors/frame_result.hpp"
 #include "testbed/sensors/readback.hpp"
 #include "testbed/sensors/sensor_frame.hpp"
+#include "testbed/sensors/skylight.hpp"
 #include "testbed/sensors/sun_maps.hpp"
 
 namespace neritic::testbed {
+
+struct FrameParts;
 
 // Light that all cameras of a frame share, declared with the first that needs it.
 struct FrameLight {
@@ -30,8 +33,11 @@ struct FrameLight {
     graph::ImageHandle image;
   };
   std::map<std::uint32_t, Net> caustics;
-  bool still_known = false;
-  std::uint64_t still = 0;  // render::still_hash
+  // render::still_hash of the frame.
+  std::uint64_t still_of(const FrameParts& frame);
+
+ private:
+  std::optional<std::uint64_t> still_;
 };
 
 // Shared by all sensors of a frame while it is declared.
@@ -48,6 +54,7 @@ struct FrameParts {
   std::uint64_t seed = 0;  // of noise and speckle
   FrameLight& light;
   SunMaps& sun_maps;
+  Skylight& skylight;
   // Flags by object: what may move, and its opposite.
   std::span<const std::uint8_t> moving, still;
   std::uint32_t frame = 0;  // the request's: noise follows from it

@@ -132,6 +132,7 @@ TEST(SceneAssets, TheFormatsPageHasEveryKey) {
   for (const KeyList keys : {KeyList(kSceneKeys),        KeyList(kSunKeys),
                              KeyList(kSunShadowKeys),    KeyList(kCausticsKeys),
                              KeyList(kShaftKeys),        KeyList(kAmbientKeys),
+                             KeyList(kSkylightKeys),
                              KeyList(kLabKeys),          KeyList(kLensKeys),
                              KeyList(kPortKeys),         KeyList(kFocusKeys),
                              KeyList(kShutterKeys),      KeyList(kImageSensorKeys),

@@ -21,6 +21,7 @@
 #include "shared/particles.h"
 #include "shared/raster.h"
 #include "shared/shafts.h"
+#include "shared/skylight.h"
 #include "shared/shimmer.h"
 #include "shared/sonar.h"
 #include "shared/sonar_echo.h"
@@ -69,6 +70,9 @@ const std::map<std::string, Offsets>& shared_structs() {
        {MEMBER(SpotLight, position), MEMBER(SpotLight, direction), MEMBER(SpotLight, intensity_cd),
         MEMBER(SpotLight, cos_inner), MEMBER(SpotLight, cos_outer), MEMBER(SpotLight, profiled),
         MEMBER(SpotLight, profile)}},
+      {"SkylightParams",
+       {MEMBER(SkylightParams, low), MEMBER(SkylightParams, cell_m), MEMBER(SkylightParams, nx),
+        MEMBER(SkylightParams, ny), MEMBER(SkylightParams, nz), MEMBER(SkylightParams, samples)}},
       {"Lighting",
        {MEMBER(Lighting, terms),
         MEMBER(Lighting, lamp_count),

@@ -14,6 +14,7 @@
 #include "tools/common/curves.hpp"
 #include "tools/common/picture.hpp"
 #include "tools/tradeoff/shaft_error.hpp"
+#include "tools/tradeoff/skylight_error.hpp"
 #include "tools/tradeoff/spectrum_error.hpp"
 
 namespace neritic::tools {
@@ -373,12 +374,17 @@ std::vector<std::uint32_t> shaft_samples_of(bool quick) {
                : std::vector<std::uint32_t>{2, 4, 8, 12, 24, 48};
 }
 
+std::vector<std::uint32_t> skylight_cells_of(bool quick) {
+  return quick ? std::vector<std::uint32_t>{80, 40}
+               : std::vector<std::uint32_t>{160, 80, 40, 20, 10};
+}
+
 }  // namespace
 
 std::uint64_t steps(const OpticsTradeoffOptions& options) {
   return samples_of(options.quick).size() + texels_of(options.quick).size() +
          octaves_of(options.quick).size() + shaft_samples_of(options.quick).size() +
-         std::size(kBandCounts);
+         skylight_cells_of(options.quick).size() + std::size(kBandCounts);
 }
 
 Result<OpticsTradeoff> run_optics_tradeoff(const OpticsTradeoffOptions& options) {
@@ -414,6 +420,10 @@ Result<OpticsTradeoff> run_optics_tradeoff(const OpticsTradeoffOptions& options)
     out.points.push_back(std::move(point));
     options.step();
   }
+  for (const std::uint32_t cell_cm : skylight_cells_of(options.quick)) {
+    out.points.push_back(skylight_point(cell_cm, options.quick));
+    options.step();
+  }
   for (const std::uint32_t bands : kBandCounts) {
     NERITIC_TRY(const double error, bands_error(bands));
     NERITIC_TRY(const double ms, bands_ms(*device, bands, options.quick));
@@ -436,6 +446,8 @@ Result<bool> write_optics_tradeoff(const std::filesystem::path& folder,
       "difference from Wells's integral; ms a megapixel.\n"
       "- light shafts: the sun's light along sights in type IB from 3 m, by samples, root mean "
       "square against steps of even length; ms a megapixel.\n"
+      "- skylight: the share of the sky's light in and about a hold with a door and a hatch, by "
+      "centimetres a cell, root mean square against rays; ms of the host, once, for 1 176 m3.\n"
       "- bands: largest CIEDE2000 of a white card from 1 to 20 m in types I, III and 5C against "
       "every nanometre; ms a megapixel of open water.\n\n| term | value | error | ms "
       "|\n|---|---|---|---|\n",
@@ -443,7 +455,8 @@ Result<bool> write_optics_tradeoff(const std::filesystem::path& folder,
   nlohmann::json json{{"device", tradeoff.device}};
   Page page{"The water's optics: error over cost", {tradeoff.device}};
   page.columns = 3;
-  for (const char* term : {"inscatter", "caustics", "forward scatter", "light shafts", "bands"}) {
+  for (const char* term :
+       {"inscatter", "caustics", "forward scatter", "light shafts", "skylight", "bands"}) {
     Panel panel{term, {"device, ms"}, {"error"}};
     Series series{term, {}, {}};
     for (const OpticsPoint& p : tradeoff.points) {

@@ -1,7 +1,7 @@
 // `neritic tradeoff optics`: what the water's optics cost over their error against brute force on
 // the CPU, in double: a lamp's inscatter along a sight by its samples, caustics by the texels of
-// their tile, forward scatter by its octaves, light shafts by their samples, colours by the bands
-// of the spectrum. One thread.
+// their tile, forward scatter by its octaves, light shafts by their samples, skylight by its cells,
+// colours by the bands of the spectrum. One thread.
 #pragma once
 
 #include <cstdint>
@@ -22,10 +22,11 @@ struct OpticsTradeoffOptions {
 std::uint64_t steps(const OpticsTradeoffOptions& options);
 
 struct OpticsPoint {
-  std::string term;         // "inscatter", "caustics", "forward scatter", "light shafts", "bands"
-  std::uint32_t value = 0;  // samples, texels a side, octaves, bands
+  // "inscatter", "caustics", "forward scatter", "light shafts", "skylight", "bands"
+  std::string term;
+  std::uint32_t value = 0;  // samples, texels a side, octaves, centimetres a cell, bands
   double error = 0.0;       // root mean square, relative; contrast, CIEDE2000 of bands: largest
-  double ms = 0.0;          // of the device: a megapixel; of caustics: a frame's tile
+  double ms = 0.0;  // of the device: a megapixel; of caustics: a frame's tile; of skylight: once
 };
 
 struct OpticsTradeoff {

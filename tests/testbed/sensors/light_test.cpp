@@ -108,8 +108,65 @@ TEST_F(Light, WhatIsNotNamedIsNotInTheGraph) {
   EXPECT_NE(plan.find("sun shadows"), std::string::npos);
   scene.sun->shadows.reset();
   NERITIC_ASSERT_OK(const auto without, render_one(device(), scene, &plan));
-  for (const char* pass : {"shadows", "visibility", "caustics", "shafts"})
+  for (const char* pass : {"shadows", "visibility", "caustics", "shafts", "skylight"})
     EXPECT_EQ(plan.find(pass), std::string::npos) << pass;
+}
+
+// A hold of 6 x 4 x 6 m at 10 m, without a way in where `closed`, without its deck otherwise, seen
+// from within; exposed for the water outside.
+scene::Scene hold(bool closed) {
+  scene::Scene scene;
+  scene.path = "test";
+  scene.sun = scene::Sun{.elevation_rad = radians(60.0)};
+  scene.sun->shadows = scene::SunShadows{};
+  scene.sun->shafts = scene::Shafts{};
+  scene.ambient = scene::Ambient{.bottom_depth_m = 14.0};
+  scene.ambient->skylight = scene::Skylight{.low_m = {-9, -15, -9}, .high_m = {9, -5, 9}};
+  scene.water = scene::Water{.type = "IB", .scattering = true};
+  add_box(scene, {6.0, 0.2, 6.0}, {0.0, -13.0, 0.0});
+  add_box(scene, {0.2, 4.0, 6.0}, {-3.0, -11.0, 0.0});
+  add_box(scene, {0.2, 4.0, 6.0}, {3.0, -11.0, 0.0});
+  add_box(scene, {6.0, 4.0, 0.2}, {0.0, -11.0, -3.0});
+  add_box(scene, {6.0, 4.0, 0.2}, {0.0, -11.0, 3.0});
+  if (closed) add_box(scene, {6.2, 0.2, 6.2}, {0.0, -9.0, 0.0});
+  scene::Camera camera;
+  camera.name = "eye";
+  camera.width = 64;
+  camera.height = 48;
+  camera.exposure.fixed_ev = 12.0;
+  camera.mount.pose.position_m = {0.0, -11.0, 2.0};
+  scene.cameras.push_back(camera);
+  return scene;
+}
+
+double mean_green(const FrameResult& result) {
+  double sum = 0.0;
+  for (std::uint32_t y = 0; y < 48; ++y)
+    for (std::uint32_t x = 0; x < 64; ++x) sum += result.cameras[0].eyes[0].color.at(x, y, 1);
+  return sum / (64 * 48);
+}
+
+TEST_F(Light, AClosedHoldIsDarkAndAnOpenOneIsNot) {
+  NERITIC_ASSERT_OK(const auto closed, render_one(device(), hold(true), nullptr));
+  NERITIC_ASSERT_OK(const auto open, render_one(device(), hold(false), nullptr));
+  scene::Scene without = hold(true);
+  without.ambient->skylight.reset();
+  NERITIC_ASSERT_OK(const auto shines, render_one(device(), std::move(without), nullptr));
+  EXPECT_LT(mean_green(closed), 0.15 * mean_green(shines));
+  EXPECT_LT(mean_green(closed), 0.15 * mean_green(open));
+  EXPECT_GT(mean_green(open), 20.0);
+}
+
+TEST_F(Light, SkylightLeavesOpenWaterAsItIs) {
+  scene::Scene scene = hold(true);
+  scene.objects.clear();
+  NERITIC_ASSERT_OK(const auto with, render_one(device(), scene, nullptr));
+  scene.ambient->skylight.reset();
+  NERITIC_ASSERT_OK(const auto without, render_one(device(), std::move(scene), nullptr));
+  for (std::uint32_t x = 0; x < 64; x += 3)
+    for (std::uint32_t y = 0; y < 48; y += 5)
+      EXPECT_NEAR(int(with.cameras[0].eyes[0].color.at(x, y, 1)),
+                  int(without.cameras[0].eyes[0].color.at(x, y, 1)), 1);
 }
 
 // Light on the levels below a tile.

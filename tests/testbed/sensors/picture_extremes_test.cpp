@@ -25,6 +25,9 @@ scene::Scene everything(const Place& place) {
   scene.sun->shadows = scene::SunShadows{.size = 256, .cascades = 2};
   scene.sun->caustics = scene::Caustics{.texels = 64};
   scene.ambient = scene::Ambient{.bottom_depth_m = place.bed_m, .occlusion_m = 0.5};
+  const Vec3 middle_m = place.shift_m + Vec3(0.0, -place.bed_m, 0.0);
+  scene.ambient->skylight = scene::Skylight{.low_m = middle_m - Vec3(6.0, 1.0, 6.0),
+                                            .high_m = middle_m + Vec3(6.0, 5.0, 6.0)};
   scene::Water water{.type = "IB", .scattering = true, .surface = true};
   water.forward_scatter = scene::ForwardScatter{};
   water.waves = SeaState{};
@@ -173,6 +176,7 @@ TEST_F(PictureExtremes, EachTermIsInTheGraphOnlyWhereItIsNamed) {
       {"shadows", "eye sun shadows", [](scene::Scene& s) { s.sun->shadows.reset(); }},
       {"caustics", "caustics", [](scene::Scene& s) { s.sun->caustics.reset(); }},
       {"occlusion", "ambient occlusion", [](scene::Scene& s) { s.ambient.reset(); }},
+      {"skylight", "skylight", [](scene::Scene& s) { s.ambient->skylight.reset(); }},
       {"forward scatter", "forward scatter",
        [](scene::Scene& s) { s.water->forward_scatter.reset(); }},
       {"particles", "particles",
