@@ -154,7 +154,7 @@ Sight look_through(float depth_m, vec3 direction, float length_m, float lit, flo
   if (light_has(kLightAmbient) && light.bottom_depth_m >= 0.0) {
     // The bottom shines evenly from below; of its light a level sight is sent half, one that looks down, along
     // which it travels forwards, nearly all.
-    vec3 upwards = downwelling(depth_m) * from_bottom(depth_m) * (skylight / kPi);
+    vec3 upwards = downwelling(depth_m) * from_bottom(depth_m) / kPi * skylight;
     source += upwards * (light.particle_scattering + light.water_scattering) * (0.5 - 0.45 * direction.y);
   }
   // Integral of source * exp(-(c + K_d down) s) over the length; down is the sine of the dive angle.
