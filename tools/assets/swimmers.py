@@ -162,6 +162,29 @@ def ray_texture(n=512):
     return np.clip(col * (1 + 0.06 * f)[..., None], 0, 1)
 
 
+def ray_belly(n=512):
+    """White with a grey hem along the wings; mouth and nostrils, and five slits of gills on each side."""
+    y, x = np.meshgrid((np.arange(n) + 0.5) / n, (np.arange(n) + 0.5) / n, indexing="ij")
+    across, z = (x - 0.5) / 0.505 * 0.95, (y - 0.5) / 0.85  # metres, as the body's uv has them
+    f, blotch = N.spectral(n, 6, 1.0, 20), N.spectral(n, 4, 2, 3)
+    hem = N.smooth(0.45, 0.95, np.abs(across) + 0.03 * blotch)
+    col = N.mix(N.flat(n, (0.84, 0.84, 0.81)), (0.34, 0.36, 0.38), 0.85 * hem)
+    col = N.mix(col, (0.66, 0.64, 0.60), 0.5 * N.smooth(0.2, 1.6, blotch) * (1 - hem))
+    h = 0.0006 * f
+    slits = np.zeros_like(x)
+    for side in (-1, 1):
+        for k in range(5):
+            cx, cz = side * (0.125 - 0.006 * k), -0.20 + 0.052 * k
+            along, off = (across - cx) * side, z - cz - 0.25 * (across - cx) * side
+            slits = np.maximum(slits, N.smooth(0.006, 0.002, np.abs(off)) * N.smooth(0.036, 0.024, np.abs(along)))
+    mouth = N.smooth(0.011, 0.004, np.abs(z + 0.37 + 1.2 * across**2)) * N.smooth(0.085, 0.07, np.abs(across))
+    nose = N.smooth(0.014, 0.008, np.hypot(np.abs(across) - 0.045, z + 0.425))
+    dark = np.maximum(np.maximum(slits, mouth), nose)
+    col = N.mix(col, (0.16, 0.14, 0.14), 0.9 * dark)
+    col = N.mix(col, (0.62, 0.58, 0.54), 0.6 * N.smooth(0.16, 0.05, np.hypot(across, (z - 0.30) * 0.7)))
+    return np.clip(col * (1 + 0.04 * f)[..., None], 0, 1), N.normal_map(h - 0.005 * dark, 0.95, 0.9)
+
+
 def ray():
     """A spotted eagle ray, 1.9 m across. Joints: body, three along each wing, two of the tail."""
     m, n = 41, 13
@@ -170,6 +193,7 @@ def ray():
     rings, uv = [], []
     lead = -0.46 + 0.10 * N.smooth(0, 0.13, s) + 0.40 * N.smooth(0.10, 1, s) ** 1.25 - 0.16 * np.exp(-((s - 0.34) / 0.22) ** 2)
     trail = 0.50 - 0.02 * s - 0.34 * N.smooth(0.0, 0.55, s) + 0.26 * N.smooth(0.5, 1, s) ** 2
+    lead += (trail - 0.012 - lead) * N.smooth(0.62, 1.0, s) ** 1.6  # tips come to a point
     thick = 0.30 * np.exp(-(s / 0.20) ** 2) + 0.075 * (1 - s) ** 1.1 + 0.003
     q = (1 - np.cos(np.linspace(0, np.pi, n))) / 2
     half = 2.6 * (0.2969 * np.sqrt(q) - 0.126 * q - 0.3516 * q**2 + 0.2843 * q**3 - 0.1036 * q**4) * 0.5
@@ -215,8 +239,9 @@ def ray():
     g = Glb("ray")
     top = g.texture("ray_color", ray_texture(), 84)
     grey = g.material("back", base=top, rough=0.45)
-    white = g.material("belly", (0.80, 0.81, 0.80, 1), rough=0.5)
-    tri_up = whole.nrm[whole.tri].mean(1)[:, 1] > -0.15
+    below, bumps = ray_belly()
+    white = g.material("belly", base=g.texture("belly_color", below, 84), normal=g.texture("belly_normal", bumps, 78), rough=0.5)
+    tri_up = (whole.nrm[whole.tri].mean(1)[:, 1] > -0.15) | thin[whole.tri].all(1)
     upper, lower = whole.copy(), whole.copy()
     upper.tri, lower.tri = whole.tri[tri_up], whole.tri[~tri_up]
     nodes = []
@@ -251,7 +276,7 @@ def jellyfish():
     ray_ = N.smooth(0.35, 0.75, np.cos(16 * a)) * N.smooth(0.045, 0.075, r)
     spot = N.smooth(0.026, 0.018, r)
     c = N.mix(np.tile([0.66, 0.58, 0.48], (len(r), 1)), np.array([0.52, 0.24, 0.10]), np.maximum(0.85 * ray_, 0.7 * spot))
-    alpha = 0.42 + 0.45 * np.maximum(ray_, spot) + 0.25 * N.smooth(0.10, 0.118, r)
+    alpha = 0.16 + 0.34 * np.maximum(ray_, spot) + 0.14 * N.smooth(0.10, 0.118, r)
     bell.col = np.column_stack([c, np.clip(alpha, 0, 1)])
     rim = N.smooth(0.045, 0.112, r) * 0.9
     w = np.zeros((len(r), 6))
@@ -270,8 +295,12 @@ def jellyfish():
         q = np.linspace(0, 1, 12)[:, None]
         ln = 0.42 + 0.30 * rng.random()
         p = np.column_stack([np.cos(b) * (0.112 + 0.035 * q[:, 0] ** 2) + 0.012 * np.sin(9 * q[:, 0] + k), -0.035 - ln * q[:, 0], np.sin(b) * (0.112 + 0.035 * q[:, 0] ** 2) + 0.012 * np.cos(8 * q[:, 0] + k)])
-        threads.append(tube(p, np.linspace(0.0016, 0.0006, 12), 4, (False, False)))
-    hang = join([coloured(join(arms), lambda p: np.tile([0.58, 0.47, 0.38], (len(p.pos), 1)), 80), coloured(join(threads), lambda p: np.tile([0.42, 0.26, 0.17], (len(p.pos), 1)), 80)])
+        # Wide and faint instead of thin and full: what is narrower than a pixel would break into dots.
+        threads.append(ribbon(p, np.linspace(0.007, 0.004, 12), np.array([-np.sin(b), 0.0, np.cos(b)])))
+    hang = join([coloured(join(arms), lambda p: np.tile([0.58, 0.47, 0.38], (len(p.pos), 1)), 80), coloured(join(threads), lambda p: np.tile([0.46, 0.30, 0.20], (len(p.pos), 1)), 80)])
+    reach = np.hypot(hang.pos[:, 0], hang.pos[:, 2])
+    faint = N.smooth(0.085, 0.105, reach)
+    hang.col[:, 3] = (0.55 - 0.33 * faint) * (1 - 0.75 * N.smooth(-0.25, -0.75, hang.pos[:, 1]))
     y = hang.pos[:, 1]
     w = np.zeros((len(y), 6))
     knots = np.array([-0.05, -0.25, -0.48, -0.72])
@@ -284,7 +313,7 @@ def jellyfish():
     bound(hang, w)
     g = Glb("jellyfish")
     m_bell = g.material("bell", rough=0.25, double=True, blend=True)
-    m_hang = g.material("arms", rough=0.5, double=True)
+    m_hang = g.material("arms", rough=0.5, double=True, blend=True)
     rest = np.array([(0, 0, 0), (0, 0, 0), (0, 0.0, 0), (0, -0.2, 0), (0, -0.42, 0), (0, -0.64, 0)], float)
     parent = [None, 0, 0, 2, 3, 4]
     nodes = []
