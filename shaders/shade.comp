@@ -175,8 +175,9 @@ void main() {
   Surface s;
   s.position = eye + ray * planar_m;
   s.normal = octahedral_decode(texelFetch(normal_image, at, 0).rg);
-  vec3 root_albedo = texelFetch(albedo_image, at, 0).rgb;
-  s.albedo = root_albedo * root_albedo;
+  vec4 root_albedo = texelFetch(albedo_image, at, 0);
+  s.albedo = root_albedo.rgb * root_albedo.rgb;
+  s.through = 1.0 - root_albedo.a;
   s.roughness = material.x;
   s.metallic = material.y;
   s.occlusion = material.z;

@@ -37,6 +37,10 @@ const gpu::Buffer& GpuScene::morphs() const {
 const std::vector<GpuMaterial>& GpuScene::materials() const {
   return parts_->materials.materials;
 }
+bool GpuScene::has_thin() const {
+  return parts_->materials.has_thin;
+}
+
 bool GpuScene::has_emission() const {
   return parts_->materials.has_emission;
 }

@@ -86,6 +86,7 @@ class GpuScene {
   const std::vector<GpuMaterial>& materials() const;
   const std::vector<DrawGroup>& groups() const { return groups_; }
   bool has_emission() const;
+  bool has_thin() const;  // some material lets diffuse light through
   std::uint64_t triangles() const { return triangles_; }  // of all appearances
 
  private:

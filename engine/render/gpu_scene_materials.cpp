@@ -13,7 +13,7 @@ namespace {
 
 using shared::MaterialData;
 // The places that shaders/shared/material.glsl counts on.
-static_assert(sizeof(MaterialData) == 4 * 48 && offsetof(MaterialData, emissive) == 4 * 4 &&
+static_assert(sizeof(MaterialData) == 4 * 56 && offsetof(MaterialData, emissive) == 4 * 4 &&
               offsetof(MaterialData, metallic) == 4 * 7 &&
               offsetof(MaterialData, roughness) == 4 * 8 &&
               offsetof(MaterialData, reflectance) == 4 * 9 &&
@@ -24,7 +24,8 @@ static_assert(sizeof(MaterialData) == 4 * 48 && offsetof(MaterialData, emissive)
               offsetof(MaterialData, metal_rough_map) == 4 * 20 &&
               offsetof(MaterialData, normal_map) == 4 * 27 &&
               offsetof(MaterialData, occlusion_map) == 4 * 34 &&
-              offsetof(MaterialData, emissive_map) == 4 * 41);
+              offsetof(MaterialData, emissive_map) == 4 * 41 &&
+              offsetof(MaterialData, diffuse_transmission) == 4 * 48);
 
 const std::vector<gpu::BindingDesc>& material_bindings() {
   static const std::vector<gpu::BindingDesc> bindings{
@@ -64,6 +65,7 @@ std::uint32_t flags_of(const scene::Material& m, bool vertex_colors) {
   flag(vertex_colors, shared::kMaterialVertexColor);
   flag(m.alpha_mode == scene::AlphaMode::kMask, shared::kMaterialMask);
   flag(m.transmissive, shared::kMaterialTransmissive);
+  flag(m.diffuse_transmission > 0.0f, shared::kMaterialThin);
   return flags;
 }
 
@@ -190,6 +192,7 @@ Status MaterialBuilder::add_material(std::size_t model_index, const scene::Mater
   data.normal_scale = m.normal_scale;
   data.occlusion_strength = m.occlusion_strength;
   data.alpha_cutoff = m.alpha_cutoff;
+  data.diffuse_transmission = m.diffuse_transmission;
   data.base_color_map = mapping_of(m.base_color_texture);
   data.metal_rough_map = mapping_of(m.metallic_roughness_texture);
   data.normal_map = mapping_of(m.normal_texture);
@@ -210,6 +213,7 @@ Status MaterialBuilder::add_material(std::size_t model_index, const scene::Mater
   material.blend = m.alpha_mode == scene::AlphaMode::kBlend || m.transmissive;
   material.emissive = m.unlit || m.emissive != Vec3f(0.0f);
   out_.has_emission |= material.emissive;
+  out_.has_thin |= m.diffuse_transmission > 0.0f;
   out_.materials.push_back(material);
   data_.push_back(data);
   textures_.push_back(textures);

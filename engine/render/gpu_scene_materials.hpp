@@ -19,6 +19,7 @@ struct GpuSceneMaterials {
   gpu::Buffer constants;
   std::unique_ptr<gpu::DescriptorArena> descriptors;
   bool has_emission = false;
+  bool has_thin = false;  // a material lets diffuse light through
 };
 
 class MaterialBuilder {

@@ -354,7 +354,8 @@ std::string names_of_terms(const shared::Lighting& lighting) {
       {shared::kLightShafts, "light shafts"},
       {shared::kLightProfiles, "beam profiles"},
       {shared::kLightSunSeen, "the sun's image"},
-      {shared::kLightSkylight, "skylight"}};
+      {shared::kLightSkylight, "skylight"},
+      {shared::kLightThin, "light through sheets"}};
   std::vector<std::string> names;
   for (const auto& [bit, name] : kNames)
     if (lighting.terms & bit) names.emplace_back(name);

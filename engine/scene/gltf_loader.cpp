@@ -14,14 +14,20 @@ namespace neritic::scene {
 namespace gltf {
 namespace {
 
-constexpr std::string_view kSupported[] = {
-    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",
-    "EXT_texture_webp",        "KHR_draco_mesh_compression",
-    "KHR_lights_punctual",     "KHR_materials_emissive_strength",
-    "KHR_materials_ior",       "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_specular",  "KHR_materials_transmission",
-    "KHR_materials_unlit",     "KHR_mesh_quantization",
-    "KHR_texture_transform"};
+constexpr std::string_view kSupported[] = {"EXT_mesh_gpu_instancing",
+                                           "EXT_meshopt_compression",
+                                           "EXT_texture_webp",
+                                           "KHR_draco_mesh_compression",
+                                           "KHR_lights_punctual",
+                                           "KHR_materials_diffuse_transmission",
+                                           "KHR_materials_emissive_strength",
+                                           "KHR_materials_ior",
+                                           "KHR_materials_pbrSpecularGlossiness",
+                                           "KHR_materials_specular",
+                                           "KHR_materials_transmission",
+                                           "KHR_materials_unlit",
+                                           "KHR_mesh_quantization",
+                                           "KHR_texture_transform"};
 
 bool is_supported(std::string_view extension) {
   return std::find(std::begin(kSupported), std::end(kSupported), extension) != std::end(kSupported);

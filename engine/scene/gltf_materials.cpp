@@ -172,6 +172,10 @@ Material parse_material(Loading& loading, Field field) {
   out.double_sided = field["doubleSided"].boolean(false);
   out.unlit = field.extension("KHR_materials_unlit").present();
   out.reflectance = parse_reflectance(field);
+  const Field through = field.extension("KHR_materials_diffuse_transmission");
+  out.diffuse_transmission = unit(through["diffuseTransmissionFactor"], 0.0f);
+  for (const char* key : {"diffuseTransmissionTexture", "diffuseTransmissionColorTexture"})
+    if (through[key].present()) through[key].note_with("ignored, only the factor is read");
   loading.mixed.push_back(parse_mixed(loading, field, out));
   return out;
 }

@@ -88,6 +88,9 @@ struct Material {
   // KHR_materials_transmission, of a thin pane: 1 - base colour's alpha of the light that is not
   // reflected passes, tinted by the base colour.
   bool transmissive = false;
+  // KHR_materials_diffuse_transmission: of the diffuse light on a thin sheet, the share that leaves
+  // on its other side, in the base colour.
+  float diffuse_transmission = 0.0f;
   TextureRef base_color_texture, metallic_roughness_texture, normal_texture, occlusion_texture,
       emissive_texture;
 };

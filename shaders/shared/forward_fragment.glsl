@@ -53,7 +53,8 @@ void main() {
   if (material_has(kMaterialUnlit)) {
     radiance = base.rgb * light.emissive_scale;
   } else {
-    Surface s = Surface(position, fragment_normal(normal, tangent, uv), base.rgb, m.x, m.y, m.z, material.reflectance);
+    Surface s = Surface(position, fragment_normal(normal, tangent, uv), base.rgb, m.x, m.y, m.z, material.reflectance,
+                        material_has(kMaterialThin) ? material.diffuse_transmission : 0.0);
     if (material_has(kMaterialTransmissive)) {
       // A thin pane: what is neither reflected nor scattered diffusely passes straight on.
       vec2 share = even_reflectance(s.roughness, clamp(dot(s.normal, -along), 0.0, 1.0));

@@ -45,7 +45,8 @@ void main() {
 #ifndef NERITIC_SHAPE
   vec3 m = fragment_material(uv);
   bool unlit = material_has(kMaterialUnlit);
-  out_albedo = vec4(unlit ? vec3(0.0) : sqrt(max(base.rgb, vec3(0.0))), 1.0);
+  out_albedo = vec4(unlit ? vec3(0.0) : sqrt(max(base.rgb, vec3(0.0))),
+                    material_has(kMaterialThin) ? 1.0 - material.diffuse_transmission : 1.0);
   out_material = vec4(m, unlit ? 1.0 : material.reflectance);
 #endif
 #ifdef NERITIC_EMISSIVE

@@ -27,6 +27,8 @@ NERITIC_CONST uint kLightShafts = 1u << 23;
 NERITIC_CONST uint kLightProfiles = 1u << 24;
 // The sun is above the horizon of a scene with the surface: its disc and its glitter.
 NERITIC_CONST uint kLightSunSeen = 1u << 25;
+// Some sheet lets diffuse light through: 1 - the albedo image's alpha.
+NERITIC_CONST uint kLightThin = 1u << 27;
 // What stands still takes away light from above: the skylight image.
 NERITIC_CONST uint kLightSkylight = 1u << 26;
 // Refractive index of sea water against air, in the visible (1.33 to 1.34, Mobley 1994).

@@ -6,7 +6,7 @@
 // A uniform block, not a storage buffer: helper invocations at triangle edges must read it too, or the
 // derivatives there (so the mip level) are wrong. llvmpipe masks storage loads of helpers.
 layout(set = 1, binding = kMaterialConstants, scalar) uniform Material { MaterialData material_data; };
-layout(set = 1, binding = kMaterialConstants, scalar) uniform MaterialWords { float material_words[48]; };
+layout(set = 1, binding = kMaterialConstants, scalar) uniform MaterialWords { float material_words[56]; };
 layout(set = 1, binding = kMaterialBaseColor) uniform sampler2D base_color_texture;
 layout(set = 1, binding = kMaterialMetalRough) uniform sampler2D metal_rough_texture;
 layout(set = 1, binding = kMaterialNormal) uniform sampler2D normal_texture;
@@ -43,6 +43,7 @@ void take_material() {
   material.normal_map = material_mapping(27u);
   material.occlusion_map = material_mapping(34u);
   material.emissive_map = material_mapping(41u);
+  material.diffuse_transmission = material_word(48u);
 }
 
 // uv: both sets, xy and zw.

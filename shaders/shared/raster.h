@@ -63,6 +63,7 @@ NERITIC_CONST uint kMaterialUnlit = 32;
 NERITIC_CONST uint kMaterialVertexColor = 64;
 NERITIC_CONST uint kMaterialMask = 128;
 NERITIC_CONST uint kMaterialTransmissive = 256;
+NERITIC_CONST uint kMaterialThin = 512;  // diffuse_transmission is above 0
 
 // KHR_texture_transform and the UV set of one texture.
 struct TextureMapping {
@@ -89,6 +90,8 @@ struct MaterialData {
   TextureMapping normal_map;
   TextureMapping occlusion_map;
   TextureMapping emissive_map;
+  float diffuse_transmission;
+  float unused[7];  // whole rows of eight: shared/material.glsl
 };
 
 // Locations of the instance streams; a vertex's own are 0 to 5.

@@ -13,6 +13,7 @@ struct Surface {
   float metallic;
   float occlusion;
   float reflectance;  // (n - 1) / (n + 1)
+  float through;      // of the diffuse light, with kLightThin: the share that leaves on the other side
 };
 
 // Reflectance of a dielectric at normal incidence (Fresnel): n = 1.5 gives 0.04 in air, 0.0035 in water,
@@ -58,6 +59,7 @@ vec3 reflect_light(Surface s, vec3 to_eye, vec3 to_light, float spread) {
   p5 = p5 * p5 * one_minus;
   vec3 fresnel = f0 + (1.0 - f0) * p5;
   vec3 diffuse = s.albedo * (1.0 - s.metallic) * (1.0 - fresnel) / kPi;
+  if (light_has(kLightThin)) diffuse *= 1.0 - s.through;
   return (diffuse + fresnel * distribution * visibility) * n_l;
 }
 
@@ -74,6 +76,23 @@ const Seen kAllSeen = Seen(1.0, 1.0, 1.0, 1.0, 1.0);
 // Share of a lamp that the place sees. The including file defines it.
 float lamp_seen(uint lamp, vec3 position, vec3 normal);
 
+// BRDF times cosine of the light that comes through a thin sheet from behind: diffuse.
+vec3 transmit_light(Surface s, vec3 to_light) {
+  if (!light_has(kLightThin)) return vec3(0.0);
+  return s.albedo * ((1.0 - s.metallic) * s.through * max(-dot(s.normal, to_light), 0.0) / kPi);
+}
+
+// Even light about a surface with this normal, over pi times what it sends on: from above, and from the bottom.
+vec3 even_light(vec3 normal, vec3 irradiance, vec3 direct, float depth_m, Seen seen) {
+  // Diffuse light comes mostly from above.
+  float from_below = light_has(kLightWater) ? kWaterFromBelow : kGroundFromBelow;
+  float up = 0.5 + 0.5 * normal.y;
+  float above = up * up * (3.0 - 2.0 * up);
+  if (light_has(kLightAmbient))
+    return irradiance * ((1.0 - direct) * above * seen.sky + (from_bottom(depth_m) + 0.02) * (1.0 - above));
+  return irradiance * (1.0 - direct) * mix(from_below, 1.0, above);
+}
+
 // Radiance that the surface sends towards the eye (before the water between).
 vec3 shade_surface(Surface s, vec3 to_eye, Seen seen) {
   vec3 radiance = vec3(0.0);
@@ -89,14 +108,10 @@ vec3 shade_surface(Surface s, vec3 to_eye, Seen seen) {
       beam *= mix(min(seen.sky, seen.skylight), seen.sun, core_share(depth_m));
     if (light_has(kLightCaustics)) beam *= seen.caustic;
     radiance += beam * reflect_light(s, to_eye, light.to_sun, sun_spread);
-    // Diffuse light comes mostly from above.
-    float from_below = light_has(kLightWater) ? kWaterFromBelow : kGroundFromBelow;
-    float up = 0.5 + 0.5 * s.normal.y;
-    float above = up * up * (3.0 - 2.0 * up);
+    radiance += beam * transmit_light(s, light.to_sun);
     vec3 diffuse_color = s.albedo * (1.0 - s.metallic) + mix(vec3(dielectric_f0(s)), s.albedo, s.metallic) * kEvenReflectance;
-    vec3 around = irradiance * (1.0 - direct) * mix(from_below, 1.0, above);
-    if (light_has(kLightAmbient))
-      around = irradiance * ((1.0 - direct) * above * seen.sky + (from_bottom(depth_m) + 0.02) * (1.0 - above));
+    vec3 around = even_light(s.normal, irradiance, direct, depth_m, seen);
+    if (light_has(kLightThin)) around = mix(around, even_light(-s.normal, irradiance, direct, depth_m, seen), s.through);
     radiance += around * s.occlusion * seen.around * seen.skylight * diffuse_color / kPi;
   }
   NERITIC_OVER_LAMPS {
@@ -115,6 +130,7 @@ vec3 shade_surface(Surface s, vec3 to_eye, Seen seen) {
     }
     if (light_has(kLightLampShadows)) arriving *= lamp_seen(i, s.position, s.normal);
     radiance += arriving * reflect_light(s, to_eye, to_lamp, clamp(0.05 / distance_m, 0.01, 1.0));
+    radiance += arriving * transmit_light(s, to_lamp);
   }
   return radiance;
 }

@@ -242,6 +242,7 @@ Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::str
               render::make_lighting(frame.scene, frame.state, views.origin_m(), request.exposure,
                                     frame.gpu_scene.has_emission(),
                                     exposes ? request.camera->terms.shutter->exposure_s : 0.0));
+  if (frame.gpu_scene.has_thin()) lighting.terms |= shared::kLightThin;
   if (!request.thrift.forward_scatter) lighting.terms &= ~shared::kLightForwardScatter;
   NERITIC_TRY(const render::LightImages light,
               declare_light(frame, prefix, g, views, draws, detail, work, lighting));

@@ -107,6 +107,20 @@ TEST(GltfMix, TransmissionBecomesTheShareThatPasses) {
   EXPECT_EQ(made.at(1, 0, 3), 0);
 }
 
+TEST(GltfMix, SheetsLetAShareOfDiffuseLightThrough) {
+  auto model =
+      with_material({{"KHR_materials_diffuse_transmission", {{"diffuseTransmissionFactor", 0.4}}}})
+          .load();
+  ASSERT_LOADS(model);
+  EXPECT_FLOAT_EQ(model->materials[0].diffuse_transmission, 0.4f);
+  EXPECT_FALSE(model->materials[0].transmissive);
+  model =
+      with_material({{"KHR_materials_diffuse_transmission", {{"diffuseTransmissionFactor", 1e30}}}})
+          .load();
+  ASSERT_LOADS(model);
+  EXPECT_FLOAT_EQ(model->materials[0].diffuse_transmission, 1.0f);
+}
+
 TEST(GltfMix, IndexAndSpecularGiveTheReflectance) {
   const auto reflectance = [](const Json& extensions) {
     return with_material(extensions).load().value().materials[0].reflectance;

@@ -21,8 +21,8 @@
 #include "shared/particles.h"
 #include "shared/raster.h"
 #include "shared/shafts.h"
-#include "shared/skylight.h"
 #include "shared/shimmer.h"
+#include "shared/skylight.h"
 #include "shared/sonar.h"
 #include "shared/sonar_echo.h"
 #include "shared/sonar_fan.h"
@@ -54,7 +54,8 @@ const std::map<std::string, Offsets>& shared_structs() {
         MEMBER(MaterialData, occlusion_strength), MEMBER(MaterialData, alpha_cutoff),
         MEMBER(MaterialData, base_color_map), MEMBER(MaterialData, metal_rough_map),
         MEMBER(MaterialData, normal_map), MEMBER(MaterialData, occlusion_map),
-        MEMBER(MaterialData, emissive_map)}},
+        MEMBER(MaterialData, emissive_map), MEMBER(MaterialData, diffuse_transmission),
+        MEMBER(MaterialData, unused)}},
       {"RasterPush", {MEMBER(RasterPush, target_size)}},
       {"SkinVertex",
        {MEMBER(SkinVertex, joints01), MEMBER(SkinVertex, joints23), MEMBER(SkinVertex, weights)}},

@@ -89,6 +89,7 @@ class Glb:
         double=False,
         mask=None,
         blend=False,
+        thin=None,
     ):
         pbr = {"baseColorFactor": list(color), "metallicFactor": metal, "roughnessFactor": rough}
         m = {"name": name, "pbrMetallicRoughness": pbr}
@@ -106,6 +107,11 @@ class Glb:
             m["alphaMode"], m["alphaCutoff"] = "MASK", mask
         if blend:
             m["alphaMode"] = "BLEND"
+        if thin is not None:  # the share of diffuse light that goes through
+            m["extensions"] = {"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": thin}}
+            used = self.doc.setdefault("extensionsUsed", [])
+            if "KHR_materials_diffuse_transmission" not in used:
+                used.append("KHR_materials_diffuse_transmission")
         self.doc["materials"].append(m)
         return len(self.doc["materials"]) - 1
 

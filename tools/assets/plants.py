@@ -101,7 +101,7 @@ def main():
         ("eelgrass", eelgrass, np.array([0.0, 0.15, 0.32, 0.52]), 4.0, 7.0),
     ):
         g = Glb(name)
-        m = g.material("leaf", base=g.texture("leaf_color", c[::2, ::2], 80), normal=g.texture("leaf_normal", nm[::4, ::4], 76), rough=0.5, double=True)
+        m = g.material("leaf", base=g.texture("leaf_color", c[::2, ::2], 80), normal=g.texture("leaf_normal", nm[::4, ::4], 76), rough=0.5, double=True, thin=0.45)
         sway(g, name, make(), m, heights, seconds, degrees)
         g.save(OUT / f"{name}.glb")
 

@@ -169,6 +169,32 @@ TEST_F(Light, SkylightLeavesOpenWaterAsItIs) {
                   int(without.cameras[0].eyes[0].color.at(x, y, 1)), 1);
 }
 
+// A thin upright sheet in air with the sun behind it, low: of its light the eye gets what the sheet
+// lets through, the share t of albedo / pi; a sheet of none is lit by the sky alone.
+TEST_F(Light, AThinSheetShinesWithTheSunBehindIt) {
+  const auto level = [&](float through) {
+    scene::Scene scene;
+    scene.path = "test";
+    scene.sun = scene::Sun{.elevation_rad = radians(20.0)};  // in the north: behind the sheet
+    add_box(scene, {4.0, 4.0, 0.002}, {0.0, 0.0, -3.0});
+    scene::Model model = *scene.models[0];
+    model.materials[0].diffuse_transmission = through;
+    scene.models[0] = std::make_shared<scene::Model>(model);
+    scene::Camera camera;
+    camera.name = "eye";
+    camera.width = 32;
+    camera.height = 32;
+    camera.exposure.fixed_ev = 14.0;
+    scene.cameras.push_back(camera);
+    auto result = render_one(device(), std::move(scene), nullptr);
+    EXPECT_TRUE(result.ok());
+    return int(result->cameras[0].eyes[0].color.at(16, 16, 1));
+  };
+  const int none = level(0.0f), half = level(0.5f), all = level(1.0f);
+  EXPECT_GT(half, none + 30);
+  EXPECT_GT(all, half + 15);
+}
+
 // Light on the levels below a tile.
 std::vector<float> thrown(gpu::Device& device, const shared::CausticsParams& params) {
   auto renderer = render::Renderer::create(device);
