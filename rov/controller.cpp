@@ -41,15 +41,6 @@ Vec6 corrections(const ControlGains& gains, const Vec6& error, const Vec6& rate,
   return u;
 }
 
-// That of a vehicle that moves so through the water, against it, body axes.
-Vec6 drag_of(const Vehicle& vehicle, const Vec3& velocity_m_s) {
-  const Vec6 moving = vec6(velocity_m_s, Vec3(0.0));
-  Vec6 drag = vehicle.linear_damping * moving;
-  for (std::size_t i = 0; i < 6; ++i)
-    drag[i] += vehicle.quadratic_damping[i] * std::abs(moving[i]) * moving[i];
-  return drag;
-}
-
 // The held components of a world vector.
 Vec3 held(const Setpoint& s, const Vec3& v) {
   return {s.hold_north ? v.x : 0.0, s.hold_east ? v.y : 0.0, s.hold_depth ? v.z : 0.0};
@@ -83,6 +74,14 @@ double heading_of(const Quat& q) {
 Vec3 along(const Vec3& vector) {
   const double length = glm::length(vector);
   return length > 0.0 ? vector / length : Vec3(0.0);
+}
+
+Vec6 drag_of(const Vehicle& vehicle, const Vec3& velocity_m_s) {
+  const Vec6 moving = vec6(velocity_m_s, Vec3(0.0));
+  Vec6 drag = vehicle.linear_damping * moving;
+  for (std::size_t i = 0; i < 6; ++i)
+    drag[i] += vehicle.quadratic_damping[i] * std::abs(moving[i]) * moving[i];
+  return drag;
 }
 
 Vec6 pose_error(const Vec3& position, const Quat& attitude, const Vec3& wanted_position,

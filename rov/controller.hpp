@@ -19,6 +19,9 @@ struct Setpoint {
   // water, for which that drag is all the thrust along it; the speed over ground comes as it may.
   Vec3 velocity_ned_m_s{0.0};
   bool by_drag_alone = false;
+  // Its velocity along its way is one over ground: level_inputs() learns the push that the water,
+  // or whatever else holds the vehicle, takes from it.
+  bool over_ground = false;
   bool hold_north = true, hold_east = true, hold_depth = true;
   bool hold_heading = true;
   bool hold_level = true;  // roll and pitch
@@ -38,6 +41,7 @@ ControlGains default_gains();
 
 struct ControlState {
   Vec6 integral;
+  double speed_n = 0.0;  // of Setpoint::over_ground (thrust_priority.hpp); 0: nothing learnt yet
 };
 
 // The direction of a vector; of one of no length 0.
@@ -57,6 +61,9 @@ enum class Clip {
 // The wrench M_RB u and what is fed forward. state.velocity is taken over ground.
 Vec6 control_wrench(const Vehicle& vehicle, const ControlGains& gains, const Setpoint& setpoint,
                     const State& state, ControlState& control, Clip clip = Clip::kEachAxis);
+
+// The drag of a vehicle that moves so through the water, as a wrench with its motion, body axes.
+Vec6 drag_of(const Vehicle& vehicle, const Vec3& velocity_m_s);
 
 // The same, clipped in each axis, as thruster commands. Precondition: the allocator is of this
 // vehicle.

@@ -8,11 +8,6 @@ namespace {
 // K_D / K_P of the default gains: where a setpoint that moved comes to stand this many seconds of
 // way ahead, the controller's output does not jump.
 constexpr double kBraking = 0.5;
-// The integral of the speed, beside K_D as its proportional part: aperiodic down to K_D of 2 / s on
-// the mass that moves, added mass included. The default gains have 2 to 2.7.
-constexpr double kLearning_1_s = 0.5;
-// Faster currents no vehicle here withstands.
-constexpr double kMostMore_m_s = 3.0;
 // lean(): its integral, four times slower than the controller comes to a place; how near that
 // place the controller's own integral does the rest; how slow a vehicle stands.
 constexpr double kLeaning_1_s = 0.25;
@@ -44,12 +39,6 @@ Setpoint go_to(Setpoint s, const State& state, const Vec3& from, const Vec3& poi
   s.position_ned_m = from + std::max(0.0, flown) * along;
   s.velocity_ned_m_s = gathered(std::min(speed_m_s, left / kBraking), along, state);
   return s;
-}
-
-double over_ground_m_s(double wanted_m_s, double now_m_s, double period_s, double& more_m_s) {
-  more_m_s = std::clamp(more_m_s + kLearning_1_s * period_s * (wanted_m_s - now_m_s),
-                        -kMostMore_m_s, kMostMore_m_s);
-  return wanted_m_s + more_m_s;
 }
 
 Setpoint orbit(Setpoint s, const State& state, const Vec3& centre, double radius_m,

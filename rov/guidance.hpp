@@ -18,10 +18,6 @@ inline constexpr double kGather_m_s = 1.0;
 Setpoint go_to(Setpoint s, const Vec3& point);
 Setpoint go_to(Setpoint s, const State& state, const Vec3& from, const Vec3& point,
                double speed_m_s);
-// The speed that a setpoint must have for the vehicle to reach wanted_m_s over ground along its
-// path, where it is now: what the water takes from it, or adds, is learnt into more_m_s, in
-// seconds. Once a control period of period_s.
-double over_ground_m_s(double wanted_m_s, double now_m_s, double period_s, double& more_m_s);
 // Round a vertical axis through centre, at its depth, from where the vehicle is; positive speeds
 // turn from north to east. It speeds up as above.
 Setpoint orbit(Setpoint s, const State& state, const Vec3& centre, double radius_m,

@@ -21,8 +21,13 @@ struct WrenchParts {
 WrenchParts parted_wrench(const Vehicle& vehicle, const ControlGains& gains,
                           const Setpoint& setpoint, const State& state, ControlState& control);
 
-// control_inputs() with these priorities, each part by gains.saturation beside those before it.
+// control_inputs() with these priorities, each part by gains.saturation beside those before it. A
+// speed over ground (Setpoint::over_ground) is held by a push that control.speed_n learns, of what
+// the thrusters give alone.
 Inputs level_inputs(const Vehicle& vehicle, const Allocator& allocator, const ControlGains& gains,
                     const Setpoint& setpoint, const State& state, ControlState& control);
+// After it: the part of its wrench that the thrusters do not give, for want of voltage.
+void unlearn_push(const Vehicle& vehicle, const ControlGains& gains, const Setpoint& setpoint,
+                  const State& state, const Vec6& missing, ControlState& control);
 
 }  // namespace neritic::rov

@@ -15,13 +15,12 @@ constexpr double kLeastWay = 0.01;
 }  // namespace
 
 MissionGuide::MissionGuide(const scene::Scene& scene, const scene::Mission& mission,
-                           const Movers& movers, double period_s)
+                           const Movers& movers)
     : kind_(mission.kind),
       acceptance_m_(mission.acceptance_m),
       speed_m_s_(mission.speed_m_s),
       radius_m_(mission.radius_m),
       distance_m_(mission.distance_m),
-      period_s_(period_s),
       speed_over_(mission.speed_over),
       repeat_(mission.repeat),
       offset_frd_m_(rov::ned_from_world(mission.offset_m)),
@@ -124,35 +123,23 @@ rov::Setpoint MissionGuide::to_waypoint(const rov::State& body, double time_s,
   if (mission.arrived > mission.left && !last && time_s - mission.arrived_s >= stop->hold_s) {
     ++mission.left;
     mission.leg_from_ned_m = stop->position_ned_m;
-    mission.more_m_s = 0.0;
+    mission.speed_n = 0.0;
     stop = &waypoints_[waypoint_index(mission)];
   }
   const bool holds = mission.arrived > mission.left;
   if (holds) return rov::go_to({}, stop->position_ned_m);
-  rov::Setpoint setpoint;
-  setpoint.by_drag_alone = speed_m_s_ > 0.0 && speed_over_ == scene::SpeedOver::kWater;
-  const Vec3 way = rov::along(stop->position_ned_m - mission.leg_from_ned_m);
-  return rov::go_to(setpoint, body, mission.leg_from_ned_m, stop->position_ned_m,
-                    pushed_m_s(body, way, mission));
+  // Without a speed it is as fast as it can.
+  const double speed_m_s = speed_m_s_ > 0.0 ? speed_m_s_ : std::numeric_limits<double>::infinity();
+  return rov::go_to(moving(), body, mission.leg_from_ned_m, stop->position_ned_m, speed_m_s);
 }
 
-// The speed of the setpoint along its way.
-double MissionGuide::pushed_m_s(const rov::State& body, const Vec3& way,
-                                MissionState& mission) const {
-  if (speed_m_s_ == 0.0) return std::numeric_limits<double>::infinity();
-  if (speed_over_ == scene::SpeedOver::kWater) return std::abs(speed_m_s_);
-  const double now_m_s = glm::dot(body.attitude * body.velocity.linear(), way);
-  return rov::over_ground_m_s(std::abs(speed_m_s_), now_m_s, period_s_, mission.more_m_s);
-}
-
-rov::Setpoint MissionGuide::round(const Vec3& centre_ned_m, const rov::State& body,
-                                  MissionState& mission) const {
+// A setpoint whose speed is the one that the mission means.
+rov::Setpoint MissionGuide::moving() const {
   rov::Setpoint setpoint;
+  if (speed_m_s_ == 0.0) return setpoint;
   setpoint.by_drag_alone = speed_over_ == scene::SpeedOver::kWater;
-  const Vec3 way =
-      rov::along(rov::orbit({}, body, centre_ned_m, radius_m_, speed_m_s_).velocity_ned_m_s);
-  return rov::orbit(setpoint, body, centre_ned_m, radius_m_,
-                    std::copysign(1.0, speed_m_s_) * pushed_m_s(body, way, mission));
+  setpoint.over_ground = speed_over_ == scene::SpeedOver::kGround;
+  return setpoint;
 }
 
 void MissionGuide::turn(rov::Setpoint& setpoint, const Face& face, const Vec3& way_ned,
@@ -172,7 +159,7 @@ rov::Setpoint MissionGuide::update(const PhysicsState& all, const rov::State& bo
   using Kind = scene::Mission::Kind;
   if (mission.piloted != 0) {  // the pilot gave it back somewhere else
     mission.piloted = 0;
-    mission.more_m_s = 0.0;
+    mission.speed_n = 0.0;
     mission.leg_from_ned_m = body.position_ned_m;
   }
   rov::Setpoint setpoint;
@@ -187,7 +174,7 @@ rov::Setpoint MissionGuide::update(const PhysicsState& all, const rov::State& bo
     if (mission.arrived == mission.left) way = stop.position_ned_m - mission.leg_from_ned_m;
   } else if (kind_ == Kind::kOrbit) {
     const Vec3 centre = rov::ned_from_world(target_.at(all, time_s).position_m);
-    setpoint = round(centre, body, mission);
+    setpoint = rov::orbit(moving(), body, centre, radius_m_, speed_m_s_);
     way = setpoint.velocity_ned_m_s;
   } else if (kind_ == Kind::kFollow) {
     const Pose target = target_.at(all, time_s);

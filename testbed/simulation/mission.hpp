@@ -13,9 +13,7 @@ namespace neritic::testbed {
 
 class MissionGuide {
  public:
-  // period_s: of control.
-  MissionGuide(const scene::Scene& scene, const scene::Mission& mission, const Movers& movers,
-               double period_s);
+  MissionGuide(const scene::Scene& scene, const scene::Mission& mission, const Movers& movers);
 
   // Where to be now. all: the states before this step; the mission's own state is advanced.
   rov::Setpoint update(const PhysicsState& all, const rov::State& body, double time_s,
@@ -24,6 +22,7 @@ class MissionGuide {
   std::size_t waypoint_count() const { return waypoints_.size(); }
   // The waypoint that it flies to or holds at.
   std::size_t waypoint_index(const MissionState& mission) const;
+  double acceptance_m() const { return acceptance_m_; }
   bool repeats() const { return repeat_; }
   double speed_m_s() const { return speed_m_s_; }  // 0: none is said
   scene::SpeedOver speed_over() const { return speed_over_; }
@@ -60,15 +59,12 @@ class MissionGuide {
           const PhysicsState& all) const;
   Face face_of(const scene::Scene& scene, const scene::Facing& facing, const Movers& movers) const;
   rov::Setpoint to_waypoint(const rov::State& body, double time_s, MissionState& mission) const;
-  rov::Setpoint round(const Vec3& centre_ned_m, const rov::State& body,
-                      MissionState& mission) const;
-  double pushed_m_s(const rov::State& body, const Vec3& way, MissionState& mission) const;
+  rov::Setpoint moving() const;
   void turn(rov::Setpoint& setpoint, const Face& face, const Vec3& way_ned, const PhysicsState& all,
             double time_s, const MissionState& mission) const;
 
   scene::Mission::Kind kind_;
   double acceptance_m_, speed_m_s_, radius_m_, distance_m_;
-  double period_s_;
   scene::SpeedOver speed_over_;
   bool repeat_;
   Vec3 offset_frd_m_;

@@ -30,8 +30,7 @@ struct MissionState {
   // The pilot of the last control period: 0 the mission, 1 a pilot, 2 a setpoint from outside, 3 a
   // velocity from outside, 4 forces of thrusters from outside.
   std::uint64_t piloted = 0;
-  // How much faster than the wanted speed over ground it pushes through the water.
-  double more_m_s = 0.0;
+  double speed_n = 0.0;  // that holds its speed over ground (rov::ControlState)
   Vec3 lean_ned_m{0.0};  // of the controller's place against a steady push (rov::lean)
   // The controller's set value.
   Vec3 wanted_ned_m{0.0};
@@ -43,7 +42,7 @@ struct MissionState {
     field("arrived_s", self.arrived_s);
     field("leg_from_ned_m", self.leg_from_ned_m);
     field("piloted", self.piloted);
-    field("more_m_s", self.more_m_s);
+    field("speed_n", self.speed_n);
     field("lean_ned_m", self.lean_ned_m);
     field("wanted_ned_m", self.wanted_ned_m);
     field("wanted_attitude", self.wanted_attitude);

@@ -178,7 +178,7 @@ Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index) {
   PhysicsVehicle out{.name = object.name, .object = index, .kind = *kind};
   out.failed_thrusters = dynamics.failed_thrusters;
   if (dynamics.mission)
-    out.mission.emplace(scene, *dynamics.mission, movers_, out.file.gains.period_s);
+    out.mission.emplace(scene, *dynamics.mission, movers_);
   out.wash = dynamics.wash;
   washes_ = washes_ || dynamics.wash;
   if (dynamics.tether_anchor_m)

@@ -82,7 +82,7 @@ bool PhysicsWorld::steer(std::size_t index, const StepCall& call, double time_s)
     setpoint.pilot = inputs.wrench.wrench;
   else
     setpoint = rov::lean(setpoint, known, vehicle.file.gains.period_s, state.mission.lean_ned_m);
-  rov::ControlState control{state.integral};
+  rov::ControlState control{state.integral, state.mission.speed_n};
   const auto commands_by = [&](const rov::Allocator& allocator) {
     return rov::level_inputs(vehicle.vehicle, allocator, vehicle.file.gains, setpoint, known,
                              control);
@@ -91,10 +91,17 @@ bool PhysicsWorld::steer(std::size_t index, const StepCall& call, double time_s)
   rov::Inputs commands = failed == vehicle.failed_thrusters
                              ? commands_by(vehicle.kind.allocator)
                              : commands_by(rov::Allocator(vehicle.vehicle, failed));
+  const auto asked_n = commands.thruster_n;
   rov::drive(vehicle.file, commands, battery(call.after, index));
+  std::array<double, rov::kMaxThrusters> missing_n{};
+  for (std::size_t i = 0; i < missing_n.size(); ++i)
+    missing_n[i] = asked_n[i] - commands.thruster_n[i];
+  rov::unlearn_push(vehicle.vehicle, vehicle.file.gains, setpoint, known,
+                    vehicle.kind.allocator.wrench_of(missing_n), control);
   if (!sim::all_finite(commands)) return false;
   state.command_n = commands.thruster_n;
   state.integral = control.integral;
+  state.mission.speed_n = control.speed_n;
   return true;
 }
 

@@ -54,8 +54,10 @@ std::vector<Vec3> flown_by_periods(const PhysicsWorld& world, double seconds) {
     const double time_s = static_cast<double>(k - 1) * gains.period_s;
     const rov::Setpoint setpoint = rov::lean(rov.mission->update(all, state, time_s, mission),
                                              state, gains.period_s, mission.lean_ned_m);
+    control.speed_n = mission.speed_n;  // the mission begins it anew on each leg
     rov::Inputs inputs =
         rov::level_inputs(rov.vehicle, rov.kind.allocator, gains, setpoint, state, control);
+    mission.speed_n = control.speed_n;
     inputs.current_ned_m_s = rov::ned_from_world(Vec3(0.1, 0.0, 0.15));
     for (int i = 0; i < 20; ++i)
       state = rov::step(rov.vehicle, state, inputs, gains.period_s / 20, rov::Integrator::kRk4);
