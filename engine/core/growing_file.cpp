@@ -1,5 +1,6 @@
 #include "engine/core/growing_file.hpp"
 
+#include <algorithm>
 #include <system_error>
 
 #include "engine/core/files.hpp"
@@ -14,8 +15,25 @@ fs::path part_of(const fs::path& path) {
 }
 
 Status GrowingFile::append(std::string_view text) {
-  if (written_ns_ == 0) written_ns_ = now_ns();
   chunk_ += text;
+  ends_.push_back(chunk_.size());
+  return add();
+}
+
+Status GrowingFile::append_lines(std::string_view text) {
+  for (std::size_t at = text.find('\n'); at != text.npos; at = text.find('\n', at + 1))
+    ends_.push_back(chunk_.size() + at + 1);
+  chunk_ += text;
+  return add();
+}
+
+Status GrowingFile::add() {
+  if (!status_.ok()) {
+    chunk_.clear();
+    ends_.clear();
+    return status_;
+  }
+  if (written_ns_ == 0) written_ns_ = now_ns();
   if (chunk_.size() < kChunk_bytes && now_ns() - written_ns_ < kChunk_ns) return {};
   return write_chunk();
 }
@@ -38,27 +56,40 @@ Result<GrowingFile::File> GrowingFile::open() {
 }
 
 Status GrowingFile::write_chunk() {
+  if (!status_.ok()) return status_;
   File file = std::move(held_);
   if (!file) {
-    NERITIC_TRY(file, open());
+    Result<File> opened = open();
+    if (!opened.ok()) return status_ = opened.error();
+    file = std::move(*opened);
   }
   const bool written =
       chunk_.empty() || std::fwrite(chunk_.data(), 1, chunk_.size(), file.get()) == chunk_.size();
   const bool flushed = std::fflush(file.get()) == 0;
   if (in_place_) held_ = std::move(file);
-  if (!written || !flushed || (file && std::fclose(file.release()) != 0)) return not_whole();
+  // Closed whatever happened: what the stream still keeps must not follow what is cut off.
+  const bool closed = !file || std::fclose(file.release()) == 0;
+  if (!written || !flushed || !closed) return status_ = not_whole();
   whole_bytes_ += chunk_.size();
   chunk_.clear();
+  ends_.clear();
   written_ns_ = now_ns();
   return {};
 }
 
-// Cuts off what was written of the last chunk: it may end within a row.
-Error GrowingFile::not_whole() const {
+// Keeps the pieces of the last chunk that are in the file whole.
+Error GrowingFile::not_whole() {
   const std::string what = path_.string() + ": cannot be written whole (disk full?)";
   if (in_place_) return Error{ErrorCode::kIo, what};
-  std::error_code ignored;
-  fs::resize_file(part_of(target_), whole_bytes_, ignored);
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(part_of(target_), error);
+  if (!error && size > whole_bytes_) {
+    const auto after = std::ranges::upper_bound(ends_, size - whole_bytes_);
+    if (after != ends_.begin()) whole_bytes_ += *(after - 1);
+  }
+  fs::resize_file(part_of(target_), whole_bytes_, error);
+  chunk_ = {};
+  ends_ = {};
   return failure(ErrorCode::kIo, "{}; what was written before is in {}", what,
                  part_of(target_).string());
 }
@@ -70,7 +101,8 @@ Status GrowingFile::finish() {
   std::error_code error;
   fs::rename(part_of(target_), target_, error);
   if (error)
-    return failure(ErrorCode::kIo, "{}: cannot be written: {}", path_.string(), error.message());
+    return status_ = failure(ErrorCode::kIo, "{}: cannot be written: {}", path_.string(),
+                             error.message());
   return {};
 }
 

@@ -1,8 +1,8 @@
 // A file that is written while a run goes on, so that the memory stays bounded and a killed run
 // keeps what it had written. It grows under its name with ".part" and takes its name when it is
 // whole: a half-written file never carries its final name. A run that is killed, fails or fills the
-// disk leaves the .part, which ends with a whole append; the next file of the same name replaces
-// it. A device or a pipe is written to as it stands. One thread.
+// disk leaves the .part, which ends with a whole piece (an append or a line); the next file of the
+// same name replaces it. A device or a pipe is written to as it stands. One thread.
 #pragma once
 
 #include <cstdio>
@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/core/clock.hpp"
 #include "engine/core/result.hpp"
@@ -20,14 +21,17 @@ namespace neritic {
 class GrowingFile {
  public:
   // A chunk is written when it has this size, or at the first append a second after the last one.
-  static constexpr std::size_t kChunk_bytes = 1 << 18;
+  static constexpr std::size_t kChunk_bytes = 1 << 16;
   static constexpr TimeNs kChunk_ns = 1'000'000'000;
 
   // Opens nothing: the first chunk does, and an error then ends the run.
   explicit GrowingFile(std::filesystem::path path) : path_(std::move(path)) {}
 
+  // One piece each. After an Error all further calls return it.
   Status append(std::string_view text);
   Status append(std::span<const std::byte> bytes);
+  // Each line is a piece.
+  Status append_lines(std::string_view text);
   // Writes what was appended, at once.
   Status flush() { return write_chunk(); }
   // Writes what is left and gives the file its name. Also a file of nothing.
@@ -39,13 +43,16 @@ class GrowingFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   using File = std::unique_ptr<std::FILE, Close>;
+  Status add();
   Status write_chunk();
   Result<File> open();
-  Error not_whole() const;
+  Error not_whole();
   std::filesystem::path path_, target_;  // target_: behind links; empty before the first chunk
   bool in_place_ = false;
   File held_;  // of what is written to as it stands; plain files are opened for each chunk
   std::string chunk_;
+  std::vector<std::size_t> ends_;  // of the pieces in the chunk
+  Status status_;
   std::uintmax_t whole_bytes_ = 0;  // of the chunks that are written
   TimeNs written_ns_ = 0;
 };

@@ -10,7 +10,7 @@ namespace neritic::testbed {
 class RowSink {
  public:
   virtual ~RowSink() = default;
-  // The rows of a step; not called where there are none. An Error ends the run.
+  // The rows of a step; not called where there are none, nor after an Error. The run goes on.
   virtual Status accept(const DiveRows& rows) = 0;
   // After the last step, on the owner's thread. Also after an Error of accept.
   virtual Status finish() = 0;

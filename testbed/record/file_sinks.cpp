@@ -1,5 +1,7 @@
 #include "testbed/record/file_sinks.hpp"
 
+#include <algorithm>
+
 namespace neritic::testbed {
 
 Status DiveLog::accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample>) {
@@ -7,9 +9,18 @@ Status DiveLog::accept(const sim::Snapshot<PhysicsState>& step, std::span<const 
   last_step_ = step.step;
   recorder_->add(step);
   if (recorder_->rows().empty()) return {};
-  for (const auto& sink : rows_) NERITIC_TRY_STATUS(sink->accept(recorder_->rows()));
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (failed_[i]) continue;
+    const Status taken = rows_[i]->accept(recorder_->rows());
+    failed_[i] = !taken.ok();
+    if (failed_[i] && on_failure_) on_failure_(taken.error().message);
+  }
   recorder_->clear_rows();
   return {};
+}
+
+bool DiveLog::failed() const {
+  return std::ranges::find(failed_, true) != failed_.end();
 }
 
 Status DiveLog::finish() {

@@ -25,10 +25,12 @@ class QueuedFile {
  public:
   static constexpr std::size_t kMostWaiting_bytes = std::size_t{16} << 20;
 
-  // text: of a batch, on the writer's thread. head comes first.
+  // text: the lines of a batch, on the writer's thread. head, of whole lines, comes first and is
+  // written at once: a disk that fills leaves it.
   QueuedFile(std::filesystem::path path, std::string_view head,
              std::function<std::string(const Batch&)> text)
-      : text_(std::move(text)), file_(std::move(path)), status_(file_.append(head)) {
+      : text_(std::move(text)), file_(std::move(path)), status_(file_.append_lines(head)) {
+    if (status_.ok()) status_ = file_.flush();
     writer_ = std::thread([this] { write_all(); });
   }
   ~QueuedFile() { stop(); }
@@ -57,7 +59,7 @@ class QueuedFile {
       const Batch batch = std::exchange(waiting_, {});
       changed_.notify_all();
       lock.unlock();
-      const Status written = file_.append(text_(batch));
+      const Status written = file_.append_lines(text_(batch));
       lock.lock();
       if (written.ok()) continue;
       status_ = written;

@@ -18,7 +18,7 @@ class RecordingSwitch::Files final : public StepSink {
       : recording_(world, simulation, with(base, ".mcap"), std::move(options)),
         csv_(world, 0.0, rows(world, base)),
         outputs_(world, recording_.streams()) {}
-  bool failed() const { return recording_.failed(); }
+  bool failed() const { return recording_.failed() || csv_.failed(); }
 
   Status use(const Sample& sample) override { return recording_.use(sample); }
   Status accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample>) override {

@@ -105,5 +105,25 @@ TEST_F(DivePhysics, AFullDiskEndsTheRecordingInOneLineAndTheDiveGoesOn) {
   EXPECT_FALSE(log->whole);
 }
 
+TEST_F(DivePhysics, AFullDiskEndsTheLogInOneLineAndTheDiveGoesOn) {
+  const std::string limited = std::string(kNoDevice) +
+                              " bash -c 'trap \"\" XFSZ; ulimit -f 16; "
+                              "exec \"$@\"' bash";
+  for (const char* pace : {"--realtime ", ""}) {
+    const Outcome outcome =
+        dive(std::string("--headless --seconds 2.5 ") + pace + "--log " + file("full.csv"),
+             "dive.toml", limited);
+    EXPECT_EQ(outcome.status, 1) << outcome.err;
+    EXPECT_NE(outcome.err.find("cannot be written whole (disk full?)"), std::string::npos)
+        << outcome.err;
+    EXPECT_NE(outcome.out.find("2.5 s in 600 steps"), std::string::npos) << outcome.out;
+    // The rows that fit, and none of those that do not.
+    const std::string part = read_text(scratch_ / "full.csv.part").value();
+    EXPECT_GT(part.size(), 15'000u);
+    EXPECT_EQ(part.back(), '\n');
+    EXPECT_FALSE(std::filesystem::exists(scratch_ / "full.csv"));
+  }
+}
+
 }  // namespace
 }  // namespace neritic

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "engine/core/log.hpp"
 #include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "tools/common/picture.hpp"
@@ -94,7 +95,9 @@ StepFiles::StepFiles(const StepFileFlags& flags, const std::string& title,
     rows.push_back(std::make_unique<DivePlot>(world, title, flags.plot));
     plot = static_cast<DivePlot*>(rows.back().get());
   }
-  auto log = std::make_unique<DiveLog>(world, flags.log_rate_hz.value_or(0.0), std::move(rows));
+  auto log = std::make_unique<DiveLog>(
+      world, flags.log_rate_hz.value_or(0.0), std::move(rows),
+      [](const std::string& line) { log_warn("{}; the run goes on without its log", line); });
   log_ = log.get();
   if (plot) plot->set_figures(log_->recorder().humans().figures());
   files_.push_back(std::move(log));

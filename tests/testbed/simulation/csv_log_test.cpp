@@ -2,6 +2,9 @@
 #include "testbed/record/csv_log.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
 
 #include "testbed/record/file_sinks.hpp"
 #include "tests/testbed/csv_text.hpp"
@@ -17,10 +20,13 @@ TestDive diver_and_vehicle() {
                  rov_text("position_m = [3, -12, 0]\n"));
 }
 
-DiveLog log_to(const PhysicsWorld& world, const fs::path& path) {
+DiveLog log_to(const PhysicsWorld& world, const fs::path& path,
+               std::vector<std::string>* told = nullptr) {
   std::vector<std::unique_ptr<RowSink>> rows;
   rows.push_back(std::make_unique<CsvLog>(world, path));
-  return DiveLog(world, 0.0, std::move(rows));
+  return DiveLog(world, 0.0, std::move(rows), [told](const std::string& line) {
+    if (told) told->push_back(line);
+  });
 }
 
 TEST(CsvLog, IsTheTableOfTheRowsOnceItIsWhole) {
@@ -61,15 +67,45 @@ TEST(CsvLog, GrowsWhileTheRunGoesOn) {
   EXPECT_GE(read_text(folder / "log.csv").value().size(), steps * a_step);
 }
 
-TEST(CsvLog, AFullDiskEndsTheRunInOneLine) {
+TEST(CsvLog, AFullDiskIsToldInOneLineAndTheRunGoesOn) {
   const TestDive dive = diver_and_vehicle();
-  DiveLog log = log_to(*dive.world, "/dev/full");
-  Status status;
-  for (int i = 0; i < 1'000'000 && status.ok(); ++i)
-    status = log.accept(dive.simulation->newest(), {});
-  ASSERT_FALSE(status.ok());
-  EXPECT_EQ(status.error().message, "/dev/full: cannot be written whole (disk full?)");
-  EXPECT_EQ(log.finish().error().message, status.error().message);
+  std::vector<std::string> told;
+  DiveLog log = log_to(*dive.world, "/dev/full", &told);
+  for (int i = 0; i < 10'000; ++i) ASSERT_TRUE(log.accept(dive.simulation->newest(), {}).ok());
+  EXPECT_TRUE(log.failed());
+  const std::string line = "/dev/full: cannot be written whole (disk full?)";
+  EXPECT_EQ(told, std::vector{line});
+  EXPECT_EQ(log.finish().error().message, line);
+}
+
+// The limit of a file's size stands for a disk that fills.
+TEST(CsvLog, AFullDiskKeepsTheRowsThatFit) {
+  const TestDive dive = diver_and_vehicle();
+  const test::ScratchFolder folder;
+  DiveRecorder one(*dive.world, {.rows = true});
+  one.add(dive.simulation->newest());
+  const std::string step = csv_of(*dive.world, one.rows());
+  const std::size_t head = DiveCsv(*dive.world).heading().size();
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  // Within the heading, the first rows, many rows.
+  for (const std::size_t most : {head / 2, head + 2 * (step.size() - head) + 10, head + 30'000}) {
+    const std::string name = fmt::format("log{}.csv", most);
+    const rlimit small{most, before.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+    DiveLog log = log_to(*dive.world, folder / name);
+    for (int i = 0; i < 1000; ++i) (void)log.accept(dive.simulation->newest(), {});
+    EXPECT_FALSE(log.finish().ok());
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+    const std::string part = read_text(part_of(folder / name)).value();
+    EXPECT_LE(part.size(), most);
+    EXPECT_TRUE(part.empty() || part.back() == '\n') << most;
+    // The longest row is a vehicle's.
+    if (most > head) EXPECT_GT(part.size() + step.size() - head, most);
+    EXPECT_FALSE(fs::exists(folder / name));
+  }
+  std::signal(SIGXFSZ, handler);
 }
 
 }  // namespace
