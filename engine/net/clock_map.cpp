@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,10 @@ constexpr double kShares[] = {0.2, 0.3, 0.4, 0.5};
 // A device that sends less often, as a heart strap, is remembered for ten minutes, so that there
 // are as many quick packets among those of its last buckets.
 constexpr TimeNs kSparse_ns = 250'000'000, kSparseBucket_ns = 5 * ClockMap::kBucket_ns;
+// Packets agree within this, and more the longer they lie apart. So large a part of those near one
+// must: of many a few agree by chance.
+constexpr double kAgree_ns = 250'000.0, kAgreeDrift = 20e-6, kAgreeing = 0.03;
+constexpr std::size_t kNearBuckets = 4;
 
 }  // namespace
 
@@ -32,42 +37,104 @@ void ClockMap::note_way(TimeNs way_ns, TimeNs) {
   longest_ns_ = std::max(way, longest_ns_ * (1.0 - kForget / 16.0));
 }
 
-// Whether the device's clock was set: a packet comes before it can, or all come late for long.
-bool ClockMap::jumped(TimeNs late_ns, TimeNs arrived_ns) {
-  if (late_ns < -kEarly_ns) return true;
+// Whether the device's clock was set: several packets in turn come before they can and agree, or
+// all come late for long. A packet that is early or late alone has a wrong time.
+ClockMap::Verdict ClockMap::judge(TimeNs late_ns, TimeNs sent_ns, TimeNs arrived_ns) {
+  if (late_ns < -kEarly_ns) {
+    if (!early_.empty()) {
+      const TimeNs before_ns = early_.back().arrived_ns - early_.back().sent_ns;
+      if (std::abs(arrived_ns - sent_ns - before_ns) > kEarly_ns) early_.clear();
+    }
+    early_.push_back({sent_ns, arrived_ns});
+    return early_.size() < kEarlyPackets ? Verdict::kDoubtful : Verdict::kJumped;
+  }
+  early_.clear();
   if (late_ns <= kLate_ns) {
     late_ = false;
-    return false;
+    return Verdict::kGood;
   }
   if (!std::exchange(late_, true)) late_since_ns_ = arrived_ns;
-  return arrived_ns - late_since_ns_ >= kLateFor_ns;
+  return arrived_ns - late_since_ns_ < kLateFor_ns ? Verdict::kDoubtful : Verdict::kJumped;
 }
 
 void ClockMap::add(TimeNs sent_ns, TimeNs arrived_ns) {
-  const TimeNs way_ns = arrived_ns - sent_ns;
-  if (!lowest_.empty()) {
-    const TimeNs late_ns = arrived_ns - to_host(sent_ns);
-    if (jumped(late_ns, arrived_ns)) {
+  if (!buckets_.empty()) {
+    const Verdict verdict = judge(arrived_ns - to_host(sent_ns), sent_ns, arrived_ns);
+    if (verdict == Verdict::kDoubtful) return;
+    if (verdict == Verdict::kJumped) {
+      const std::vector<Packet> early = std::move(early_);
       ++jumps_;
       restart();
+      for (const Packet& packet : early)
+        if (packet.sent_ns != sent_ns || packet.arrived_ns != arrived_ns)
+          keep(packet.sent_ns, packet.arrived_ns);
     }
   }
-  const bool sparse = !lowest_.empty() && sent_ns - newest_sent_ns_ > kSparse_ns;
+  keep(sent_ns, arrived_ns);
+}
+
+bool ClockMap::Bucket::add(const Point& point) {
+  if (count == quick.size() && point.way_ns >= quick.back().way_ns) return false;
+  std::size_t at = std::min(count, quick.size() - 1);
+  for (; at > 0 && quick[at - 1].way_ns > point.way_ns; --at) quick[at] = quick[at - 1];
+  quick[at] = point;
+  count = std::min(count + 1, quick.size());
+  return true;
+}
+
+void ClockMap::keep(TimeNs sent_ns, TimeNs arrived_ns) {
+  const Point point{sent_ns, arrived_ns - sent_ns};
+  const bool sparse = !buckets_.empty() && sent_ns - newest_sent_ns_ > kSparse_ns;
   const TimeNs bucket_ns = sparse ? kSparseBucket_ns : kBucket_ns;
-  newest_sent_ns_ = lowest_.empty() ? sent_ns : std::max(newest_sent_ns_, sent_ns);
+  newest_sent_ns_ = buckets_.empty() ? sent_ns : std::max(newest_sent_ns_, sent_ns);
   const auto second = [&](TimeNs t) { return t / bucket_ns; };
-  const auto at = std::ranges::find_if(
-      lowest_, [&](const Point& p) { return second(p.sent_ns) >= second(sent_ns); });
-  bool changed = true;
-  if (at != lowest_.end() && second(at->sent_ns) == second(sent_ns)) {
-    changed = way_ns < at->way_ns;
-    if (changed) *at = {sent_ns, way_ns};
-  } else {
-    lowest_.insert(at, {sent_ns, way_ns});
+  auto at = std::ranges::find_if(buckets_, [&](const Bucket& bucket) {
+    return second(bucket.quick.front().sent_ns) >= second(sent_ns);
+  });
+  if (at == buckets_.end() || second(at->quick.front().sent_ns) != second(sent_ns))
+    at = buckets_.insert(at, Bucket());
+  if (at->add(point)) {
+    auto place = static_cast<std::size_t>(at - buckets_.begin());
+    for (; buckets_.size() > kBuckets; place -= std::min<std::size_t>(place, 1))
+      buckets_.pop_front();
+    choose_points(place);
+    fit();
   }
-  while (lowest_.size() > kBuckets) lowest_.pop_front();
-  if (changed) fit();
   note_way(arrived_ns - to_host(sent_ns), arrived_ns);
+}
+
+// Whether enough of the quickest packets near this one took as long as it did.
+bool ClockMap::agreed(std::size_t bucket, std::size_t place) const {
+  const Point& point = buckets_[bucket].quick[place];
+  std::size_t others = 0, agree = 0;
+  const std::size_t end = std::min(bucket + kNearBuckets + 1, buckets_.size());
+  for (std::size_t b = bucket - std::min(bucket, kNearBuckets); b < end; ++b)
+    for (std::size_t i = 0; i < buckets_[b].count; ++i) {
+      if (b == bucket && i == place) continue;
+      const Point& other = buckets_[b].quick[i];
+      const auto apart_ns = static_cast<double>(other.sent_ns - point.sent_ns);
+      const double longer_ns = static_cast<double>(other.way_ns - point.way_ns) - slope_ * apart_ns;
+      ++others;
+      agree += std::abs(longer_ns) <= kAgree_ns + kAgreeDrift * std::abs(apart_ns) ? 1 : 0;
+    }
+  return static_cast<double>(agree) >= std::max(1.0, kAgreeing * static_cast<double>(others));
+}
+
+// The quickest packet of each bucket that others agree with; while none is, the quickest of all.
+void ClockMap::choose_points(std::size_t changed) {
+  const std::size_t end = std::min(changed + kNearBuckets + 1, buckets_.size());
+  for (std::size_t b = changed - std::min(changed, kNearBuckets); b < end; ++b) {
+    Bucket& bucket = buckets_[b];
+    bucket.agreed.reset();
+    for (std::size_t i = 0; i < bucket.count && !bucket.agreed; ++i)
+      if (agreed(b, i)) bucket.agreed = bucket.quick[i];
+  }
+  lowest_.clear();
+  for (const Bucket& bucket : buckets_)
+    if (bucket.agreed) lowest_.push_back(*bucket.agreed);
+  if (!lowest_.empty()) return;
+  const auto way = [](const Bucket& bucket) { return bucket.quick.front().way_ns; };
+  lowest_.push_back(std::ranges::min_element(buckets_, {}, way)->quick.front());
 }
 
 // The edge of the lower hull above the mean of all times says which packets were quick; the slope

@@ -3,12 +3,16 @@
 // time. Over the last two minutes a line under all such points is kept that lies near to them: the
 // one nearest on average (linear programming over the lower convex hull: Moon, Skelly, Towsley
 // 1999, Estimation and removal of clock skew from network delay measurements, INFOCOM), its slope
-// averaged over pairs of quick packets that lie far apart. Jitter does not move it. One way alone
+// averaged over pairs of quick packets that lie far apart. Jitter does not move it; nor does a
+// packet whose time was corrupted, since a point counts if others near it agree. One way alone
 // cannot tell a constant delay from an offset: the shortest way counts as none. Exchanges both ways
 // do tell (LSL, NTP), and then bound the offset from both sides. Plain value; one thread.
 #pragma once
 
+#include <array>
 #include <deque>
+#include <optional>
+#include <vector>
 
 #include "engine/core/clock.hpp"
 
@@ -41,8 +45,10 @@ class ClockMap {
   // Clocks of computers drift by less (RFC 5905, 500 ppm).
   static constexpr double kMostDrift = 500e-6;
   static constexpr TimeNs kDriftAfter_ns = 30'000'000'000;
-  // A packet that arrives so long before it can was sent by a clock that was set.
+  // Packets one after another that arrive so long before they can, and agree as well as this, were
+  // sent by a clock that was set.
   static constexpr TimeNs kEarly_ns = 100'000'000;
+  static constexpr std::size_t kEarlyPackets = 3;
   // Packets that all come so late, for so long, likewise.
   static constexpr TimeNs kLate_ns = 2'000'000'000, kLateFor_ns = 3'000'000'000;
 
@@ -50,16 +56,32 @@ class ClockMap {
   struct Point {
     TimeNs sent_ns = 0, way_ns = 0;  // way: arrived - sent
   };
+  // The quickest packets of a second by the device's clock, the quickest first.
+  struct Bucket {
+    std::array<Point, 16> quick;
+    std::size_t count = 0;
+    std::optional<Point> agreed;  // the quickest that others near it agree with
+    bool add(const Point& point);
+  };
+  enum class Verdict { kGood, kDoubtful, kJumped };
+  void keep(TimeNs sent_ns, TimeNs arrived_ns);
+  void choose_points(std::size_t changed);
+  bool agreed(std::size_t bucket, std::size_t place) const;
   void fit();
   double slope_across(double share, double slope) const;
   void note_way(TimeNs way_ns, TimeNs arrived_ns);
-  bool jumped(TimeNs late_ns, TimeNs arrived_ns);
+  Verdict judge(TimeNs late_ns, TimeNs sent_ns, TimeNs arrived_ns);
 
-  std::deque<Point> lowest_;  // of each second by the device's clock, oldest first
+  std::deque<Bucket> buckets_;  // oldest first
+  std::vector<Point> lowest_;   // of the buckets, those that others agree with
   // The line: offset at base, and its slope.
   TimeNs base_sent_ns_ = 0, base_offset_ns_ = 0, newest_sent_ns_ = 0;
   double slope_ = 0.0;
   double spread_ns_ = 0.0, longest_ns_ = 0.0;
+  struct Packet {
+    TimeNs sent_ns = 0, arrived_ns = 0;
+  };
+  std::vector<Packet> early_;  // the newest packets, if all came before they could
   TimeNs late_since_ns_ = 0;
   bool late_ = false;
   bool two_way_ = false;

@@ -73,6 +73,32 @@ TEST(ClockMap, AClockThatIsSetAnewIsFoundAgain) {
   }
 }
 
+// A bit of a packet's time flips on the way; of every other device that of the first packet too.
+TEST(ClockMap, PacketsWithAWrongTimeDoNotMoveIt) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed)
+    for (const double rate_hz : {240.0, 50.0, 2.0}) {
+      const double seconds = rate_hz < 10.0 ? 300.0 : 60.0, corrupt = 0.02;
+      const TimeNs offset_ns = -15'550'842'000'000;
+      ClockMap map;
+      double worst_s = 0.0;
+      for (int i = 0; i < static_cast<int>(rate_hz * seconds); ++i) {
+        const RandomKey key{seed, 7, static_cast<std::uint64_t>(i)};
+        const auto at = static_cast<TimeNs>(kSecond * i / rate_hz);
+        TimeNs sent = at - offset_ns + at / 28'000;  // 35.7 ppm
+        if (random_uniform(key, 0) < corrupt || (i == 0 && seed % 2 == 0))
+          sent ^= TimeNs{1} << static_cast<int>(random_uniform(key, 1) * 50.0);
+        map.add(sent, at + static_cast<TimeNs>(5e6 * random_uniform(key, 2)));
+        if (i < rate_hz * seconds / 2) continue;
+        const double error_s =
+            1e-9 * static_cast<double>(map.to_host(at - offset_ns + at / 28'000) - at);
+        worst_s = std::max(worst_s, std::abs(error_s));
+      }
+      EXPECT_LT(worst_s, 1e-3) << seed << " at " << rate_hz;
+      EXPECT_NEAR(map.estimate().drift_ppm, -35.7, 25.0) << seed << " at " << rate_hz;
+      EXPECT_LE(map.estimate().jumps, 1u) << seed << " at " << rate_hz;
+    }
+}
+
 TEST(ClockMap, AnExchangeTellsADelayFromAnOffset) {
   // The device's clock is 9.995 s ahead; each way takes 5 ms, its answer 2 ms.
   ClockMap map;
