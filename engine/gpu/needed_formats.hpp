@@ -43,8 +43,9 @@ inline constexpr std::array kNeededFormats{
                  "R16G16B16A16_SFLOAT"},
     NeededFormat{VK_FORMAT_R32G32_SFLOAT, kColorTarget | kTexture | kStorageImage | kCopied,
                  "R32G32_SFLOAT"},
-    NeededFormat{VK_FORMAT_R32_SFLOAT, kTexture | kCopied, "R32_SFLOAT"},
-    NeededFormat{VK_FORMAT_R32G32B32A32_SFLOAT, kTexture | kCopied, "R32G32B32A32_SFLOAT"},
+    NeededFormat{VK_FORMAT_R32_SFLOAT, kTexture | kStorageImage | kCopied, "R32_SFLOAT"},
+    NeededFormat{VK_FORMAT_R32G32B32A32_SFLOAT, kTexture | kStorageImage | kCopied,
+                 "R32G32B32A32_SFLOAT"},
 };
 
 // Whether a device that is chosen has all those features of the format.

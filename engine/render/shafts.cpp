@@ -9,6 +9,7 @@ namespace neritic::render {
 namespace {
 
 constexpr VkFormat kShaftFormat = VK_FORMAT_R32_SFLOAT;  // shaders/shared/shaft_texel.glsl
+static_assert(gpu::is_needed(kShaftFormat, gpu::kTexture | gpu::kStorageImage));
 constexpr auto kShaftTexels = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
                kShaftUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
                kShaftStorage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;

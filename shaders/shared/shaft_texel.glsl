@@ -4,7 +4,7 @@
 #ifndef NERITIC_SHAFT_TEXEL_GLSL
 #define NERITIC_SHAFT_TEXEL_GLSL
 
-const float kShaftMost = 8.0, kShaftSteps = 1023.0;
+#include "shared/shafts.h"
 
 float packed_shaft(float ratio, float distance) {
   return floor(distance * kShaftSteps + 0.5) + clamp(ratio / kShaftMost, 0.0, 0.9998);

@@ -32,8 +32,8 @@ TEST(MissingFormats, AreNamedWithTheirUses) {
                          ? kEverything & ~VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT
                          : kEverything;
             }),
-            "format D32_SFLOAT as sampled image, format R32_SFLOAT as sampled image and target of "
-            "copies");
+            "format D32_SFLOAT as sampled image, format R32_SFLOAT as sampled image and storage "
+            "image and target of copies");
 }
 
 // The driver's answer while it lives: R16G16_SNORM is no color attachment, which Vulkan

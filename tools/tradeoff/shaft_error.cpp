@@ -38,6 +38,11 @@ struct Net {
   }
 };
 
+// The ratio of a texel of the shafts image, as shaders/shared/shaft_texel.glsl packs it.
+double ratio_of(float texel) {
+  return (texel - std::floor(texel)) * double(shared::kShaftMost);
+}
+
 // The net at a place, as shaders/shared/caustic_light.glsl has it.
 double lit_at(const Net& net, const shared::Lighting& light, const Vec3& place, double pixel_m) {
   const double depth_m = light.origin_depth_m - place.y;
@@ -142,7 +147,7 @@ Result<OpticsPoint> shaft_point(gpu::Device& device, std::uint32_t samples, bool
                 pool.declare(graph, device, "net", inputs.caustics, render::kHdrFormat, kTexels,
                              kTexels, shared::kCausticLayers));
     NERITIC_TRY(const testbed::Readback pin,
-                pool.declare(graph, device, "shafts", shafts, render::kHdrFormat, wide, high, 1));
+                pool.declare(graph, device, "shafts", shafts, VK_FORMAT_R32_SFLOAT, wide, high, 1));
     NERITIC_TRY(gpu::Commands * commands, frames->begin());
     NERITIC_TRY(const graph::Plan* plan, executor.run(graph, *commands));
     (void)plan;
@@ -155,7 +160,7 @@ Result<OpticsPoint> shaft_point(gpu::Device& device, std::uint32_t samples, bool
     if (repeat > 0) continue;
     const auto net_halves = net_pin->mapped<std::uint16_t>();
     const Net net{{net_halves.begin(), net_halves.end()}, params.tile_m};
-    const auto halves = pin->mapped<std::uint16_t>();
+    const auto texels = pin->mapped<float>();
     const shared::View gpu_view = render::gpu_views(views)[0];
     const double pixel_rad = glm::length(Vec3(gpu_view.ray_dx)) * shared::kShaftStep;
     std::vector<double> truth;
@@ -177,7 +182,7 @@ Result<OpticsPoint> shaft_point(gpu::Device& device, std::uint32_t samples, bool
         for (std::uint32_t v = 0; v < 4; ++v)
           for (std::uint32_t u = 0; u < 4; ++u)
             wanted += truth[(y + v - 2) * wide + x + u - 2] / 16.0;
-        const double off = glm::unpackHalf1x16(halves[4 * (std::size_t{y} * wide + x)]) - wanted;
+        const double off = ratio_of(texels[std::size_t{y} * wide + x]) - wanted;
         sum += off * off;
         ++count;
       }
