@@ -4,14 +4,15 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 // Depth of field: a pixel gathers what spreads over it. A sample counts where its own spot reaches this pixel, by
-// its light over the spot's area; what lies behind a sharper surface does not spread over that.
+// its light over the spot's area. A nearer surface out of focus covers what lies behind it by the share of its spots
+// that reach here; what lies behind a sharper surface does not spread over that.
 #include "shared/exposure.h"
 #include "shared/lighting.h"
 
 layout(local_size_x = kShadeGroup, local_size_y = kShadeGroup) in;
 
 layout(set = 0, binding = kExposureHdr) uniform texture2DArray hdr_image;
-layout(set = 0, binding = kExposureOther) uniform texture2DArray depth_image;
+layout(set = 0, binding = kExposureDepth) uniform texture2DArray depth_image;
 layout(set = 0, binding = kExposureOut, rgba16f) writeonly uniform image2DArray out_image;
 layout(set = 0, binding = kExposureData, scalar) uniform Data { FocusParams focus; };
 
@@ -20,12 +21,15 @@ float distance_at(ivec3 at) {
   return depth > 0.0 ? focus.near_m / depth : 1e9;
 }
 
+// Distances that differ by less, as a factor, are one surface's.
+const float kSameSurface = 1.02;
+
 // The spot of a place as far as it can spread here: from behind a surface nothing spreads farther than that
 // surface's own spot.
 float spot_here(ivec3 other, float own_m, float own_px) {
   float other_m = distance_at(other);
   float spot_px = max(spot_radius_px(focus, other_m), 0.5);
-  return other_m > own_m * 1.02 ? min(spot_px, own_px) : spot_px;
+  return other_m > own_m * kSameSurface ? min(spot_px, own_px) : spot_px;
 }
 
 void main() {
@@ -44,8 +48,11 @@ void main() {
     float spot_px = spot_here(ivec3(clamp(at.xy + offset, ivec2(0), size - 1), at.z), own_m, own_px);
     if (spot_px > 0.6 * r) far_px = max(far_px, spot_px);
   }
+  // What is nearer spreads over this pixel and covers a share of it. The pixel's own surface covers a share of the
+  // rest, and what lies behind it shows through: as the samples of its own spot find the two.
+  vec4 nearer = vec4(0.0), behind = vec4(0.0);
   // A pixel is 1 / pi of the disk of radius 1.
-  vec4 sum = vec4(texelFetch(hdr_image, at, 0).rgb, 1.0) * (0.3183 / (own_px * own_px));
+  vec4 own = vec4(texelFetch(hdr_image, at, 0).rgb, 1.0) * (0.3183 / (own_px * own_px));
   // A spiral of even density out to there.
   float each_px2 = far_px * far_px / float(focus.samples);
   for (uint i = 0u; i < focus.samples; ++i) {
@@ -53,9 +60,19 @@ void main() {
     ivec2 offset = ivec2(round(r * vec2(cos(angle), sin(angle))));
     if (offset == ivec2(0)) continue;
     ivec3 other = ivec3(clamp(at.xy + offset, ivec2(0), size - 1), at.z);
-    float spot_px = spot_here(other, own_m, own_px);
+    float other_m = distance_at(other);
+    bool is_behind = other_m > own_m * kSameSurface;
+    float spot_px = is_behind ? own_px : max(spot_radius_px(focus, other_m), 0.5);
     float reaches = clamp(spot_px - r + 0.5, 0.0, 1.0);
-    sum += vec4(texelFetch(hdr_image, other, 0).rgb, 1.0) * (reaches * each_px2 / (spot_px * spot_px));
+    vec4 spread = vec4(texelFetch(hdr_image, other, 0).rgb, 1.0) * (reaches * each_px2 / (spot_px * spot_px));
+    if (is_behind)
+      behind += spread;
+    else if (own_m > other_m * kSameSurface)
+      nearer += spread;
+    else
+      own += spread;
   }
-  imageStore(out_image, at, vec4(min(sum.rgb / sum.a, vec3(60000.0)), 1.0));
+  vec3 rest = (own.rgb + behind.rgb) / (own.a + behind.a);
+  vec3 light = nearer.rgb / max(nearer.a, 1.0) + rest * max(1.0 - nearer.a, 0.0);
+  imageStore(out_image, at, vec4(min(light, vec3(60000.0)), 1.0));
 }

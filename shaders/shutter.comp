@@ -5,78 +5,120 @@
 
 // Motion blur and rolling shutter by the G-buffer's motion: a row's exposure begins when it is reset, and what moves
 // passes over the pixel meanwhile. The frame's own instant is the middle of the middle row's exposure.
+// For each time of its exposure a pixel asks which surfaces lie over it then: of each motion that passes here
+// (shutter_reach.comp; tiles as McGuire et al. 2012 have them, "A reconstruction filter for plausible motion
+// blur"), the place that it comes from, if that place moves so. Nearer surfaces cover farther ones. Where none was
+// in the picture, what lay hidden at the frame's instant looks as the farthest of what is seen beside it.
 #include "shared/exposure.h"
 #include "shared/lighting.h"
 
 layout(local_size_x = kShadeGroup, local_size_y = kShadeGroup) in;
 
 layout(set = 0, binding = kExposureHdr) uniform texture2DArray hdr_image;
-layout(set = 0, binding = kExposureOther) uniform texture2DArray motion_image;
+layout(set = 0, binding = kExposureMotion) uniform texture2DArray motion_image;
+layout(set = 0, binding = kExposureDepth) uniform texture2DArray depth_image;
+layout(set = 0, binding = kExposureTiles) uniform texture2DArray tile_image;
 layout(set = 0, binding = kExposureOut, rgba16f) writeonly uniform image2DArray out_image;
 layout(set = 0, binding = kExposureData, scalar) uniform Data { ShutterParams shutter; };
 
-ivec3 inside(vec2 px, int layer, ivec2 size) { return ivec3(clamp(ivec2(floor(px)), ivec2(0), size - 1), layer); }
+#include "shared/shutter.glsl"
 
-// A point that will be behind the camera counts as still.
-vec2 motion_at(ivec3 at) {
-  vec2 motion = texelFetch(motion_image, at, 0).xy;
-  return any(isnan(motion)) || any(isinf(motion)) ? vec2(0.0) : motion;
-}
+const uint kMotions = 5u;  // the pixel's own, and four that pass
 
-// The share of the sensor's rows above that of a point of the picture.
-float row_share(vec2 share) {
-  if (shutter.by_lens == 0u) return share.y;
-  vec2 at = clamp(share, 0.0, 1.0) * float(kRowSteps), low = min(floor(at), vec2(float(kRowSteps - 1u))), part = at - low;
-  uint i = uint(low.y) * (kRowSteps + 1u) + uint(low.x);
-  return mix(mix(shutter.row[i], shutter.row[i + 1u], part.x),
-             mix(shutter.row[i + kRowSteps + 1u], shutter.row[i + kRowSteps + 2u], part.x), part.y);
-}
+ivec3 inside(ivec2 at, int layer, ivec2 size) { return ivec3(clamp(at, ivec2(0), size - 1), layer); }
 
-vec3 picture(vec2 px, int layer, ivec2 size) {
-  vec2 at = px - 0.5, low = floor(at), part = at - low;
-  vec3 corners[4];
-  for (int i = 0; i < 4; ++i) corners[i] = texelFetch(hdr_image, inside(low + vec2(i & 1, i >> 1), layer, size), 0).rgb;
-  return mix(mix(corners[0], corners[1], part.x), mix(corners[2], corners[3], part.x), part.y);
-}
+// What a surface gives a pixel: light times share, the share of the pixel that it covers, and its depth (larger is
+// nearer).
+struct Cover {
+  vec3 light;
+  float share, depth;
+  vec2 way;
+};
 
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
   ivec2 size = imageSize(out_image).xy;
   if (at.x >= size.x || at.y >= size.y) return;
   vec2 px = vec2(at.xy) + 0.5;
-  // When the row is exposed, against the frame's instant; in times to the next frame.
-  float row_time = shutter.readout * (row_share(px / vec2(size)) - 0.5);
-  vec2 motion = motion_at(at);
-  // Where that came from at the row's time: once more, since what moves there may move otherwise.
-  for (int i = 0; i < 2; ++i) {
-    vec2 back = motion * row_time;
-    float far = length(back);
-    if (far > shutter.farthest_px) back *= shutter.farthest_px / far;
-    motion = motion_at(inside(px - back, at.z, size));
+  float middle = row_time(px / vec2(size)), longest = abs(middle) + 0.5 * shutter.exposed;
+  vec2 motions[kMotions];
+  motions[0] = motion_at(at);
+  uint motion_count = 1u;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 tile = at.xy / int(kShutterTile);
+    vec4 two = texelFetch(tile_image, ivec3(2 * tile.x + (i >> 1), tile.y, at.z), 0);
+    vec2 motion = (i & 1) == 0 ? two.xy : two.zw;
+    bool known = false;
+    for (uint j = 0u; j < motion_count; ++j) known = known || same_way(motion * longest, motions[j] * longest);
+    if (!known) motions[motion_count++] = motion;
   }
-  // The quickest of what is near passes over this pixel too.
-  vec2 quickest = motion;
-  for (int i = 0; i < 12; ++i) {
-    float angle = float(i) * 1.57079633 + float(i / 4) * 0.52, out_px = i < 4 ? 4.0 : (i < 8 ? 12.0 : 36.0);
-    vec2 seen = motion_at(inside(px + vec2(cos(angle), sin(angle)) * out_px, at.z, size));
-    if (dot(seen, seen) > dot(quickest, quickest)) quickest = seen;
-  }
-  vec4 sum = vec4(0.0);
-  for (uint i = 0u; i < shutter.samples; ++i) {
-    float share = (float(i) + 0.5) / float(shutter.samples) - 0.5;
-    vec2 along = motion * (row_time + shutter.exposed * share);
-    // Odd samples look along the quickest motion.
-    bool other = (i & 1u) == 1u && dot(quickest, quickest) > 1.2 * dot(motion, motion) + 1.0;
-    if (other) along = quickest * (row_time + shutter.exposed * share);
-    float far = length(along);
-    if (far > shutter.farthest_px) along *= shutter.farthest_px / far;
-    float weight = 1.0;
-    if (other) {
-      // It counts if what is there moves far enough to have been here.
-      vec2 there = motion_at(inside(px - along, at.z, size));
-      weight = smoothstep(0.5, 0.9, dot(there, quickest) / max(dot(quickest, quickest), 1e-6));
+  vec3 sum = vec3(0.0);
+  for (uint s = 0u; s < shutter.samples; ++s) {
+    float time = middle + shutter.exposed * ((float(s) + 0.5) / float(shutter.samples) - 0.5);
+    Cover covers[kMotions];
+    uint cover_count = 0u;
+    vec3 hidden = vec3(0.0);
+    float hidden_depth = 3e38;
+    for (uint k = 0u; k < motion_count; ++k) {
+      vec2 way = way_of(motions[k], time), low, part, ways[4];
+      ivec3 corners[4];
+      // The place that comes here by its own motion: of the four pixels around it, one of the same surface tells.
+      for (int i = 0; i < 4; ++i) {
+        vec2 from = px - way - 0.5;
+        low = floor(from);
+        part = from - low;
+        float nearest_px = 3e38;
+        vec2 next = way;
+        for (int c = 0; c < 4; ++c) {
+          corners[c] = inside(ivec2(low) + ivec2(c & 1, c >> 1), at.z, size);
+          ways[c] = way_of(motion_at(corners[c]), time);
+          float off_px = distance(ways[c], way);
+          if (off_px < nearest_px) {
+            nearest_px = off_px;
+            next = ways[c];
+          }
+        }
+        // A surface's motion may change over it; a jump is another surface.
+        if (i == 3 || nearest_px < 0.02 || nearest_px > allowed_px(length(way))) break;
+        way = next;
+      }
+      Cover cover = Cover(vec3(0.0), 0.0, 0.0, way);
+      vec4 beside = vec4(0.0);
+      float beside_depth = 0.0;
+      for (int c = 0; c < 4; ++c) {
+        float weight = ((c & 1) == 0 ? 1.0 - part.x : part.x) * ((c >> 1) == 0 ? 1.0 - part.y : part.y);
+        if (weight == 0.0) continue;
+        vec3 light = texelFetch(hdr_image, corners[c], 0).rgb;
+        float depth = texelFetch(depth_image, corners[c], 0).r;
+        if (same_way(ways[c], way)) {
+          cover.light += light * weight;
+          cover.share += weight;
+          cover.depth = max(cover.depth, depth);
+        } else {
+          beside += vec4(light, 1.0) * weight;
+          beside_depth = max(beside_depth, depth);
+        }
+      }
+      if (beside.a > 0.0 && beside_depth < hidden_depth) {
+        hidden = beside.rgb / beside.a;
+        hidden_depth = beside_depth;
+      }
+      bool known = cover.share == 0.0;
+      for (uint j = 0u; j < cover_count; ++j) known = known || same_way(covers[j].way, way);
+      if (!known) covers[cover_count++] = cover;
     }
-    sum += vec4(picture(px - along, at.z, size), 1.0) * weight;
+    // The nearest first; each leaves the others what it does not cover.
+    float left = 1.0;
+    for (uint n = 0u; n < cover_count; ++n) {
+      uint nearest = n;
+      for (uint j = n + 1u; j < cover_count; ++j)
+        if (covers[j].depth > covers[nearest].depth) nearest = j;
+      Cover cover = covers[nearest];
+      covers[nearest] = covers[n];
+      sum += left * cover.light;
+      left *= max(1.0 - cover.share, 0.0);
+    }
+    if (left > 1e-5) sum += left * hidden;
   }
-  imageStore(out_image, at, vec4(min(sum.rgb / max(sum.a, 1e-6), vec3(60000.0)), 1.0));
+  imageStore(out_image, at, vec4(min(sum / float(shutter.samples), vec3(60000.0)), 1.0));
 }

@@ -257,12 +257,19 @@ class Renderer {
                                                      const std::string& name,
                                                      graph::ImageHandle in, std::uint32_t width,
                                                      std::uint32_t height, std::uint32_t layers);
-  // Focus or shutter: a picture, another image of the G-buffer, and numbers.
+  // A pass of focus or shutter: images, each at its binding, and numbers make another image.
+  struct ExposurePass {
+    const char* name;    // of the pass
+    const char* result;  // of the image
+    std::span<const std::uint32_t> code;
+    std::vector<std::pair<std::uint32_t, graph::ImageHandle>> reads;
+    graph::TransientImage out;
+    std::uint32_t width, height;  // invocations
+  };
   template <class Params>
   Result<graph::ImageHandle> declare_exposure(graph::FrameGraph& graph, const std::string& prefix,
-                                              const PictureFilter& filter, gpu::Pipeline& pipeline,
-                                              graph::ImageHandle hdr, graph::ImageHandle other,
-                                              const GBuffer& gbuffer, const Params& params);
+                                              const ExposurePass& exposure, gpu::Pipeline& pipeline,
+                                              const Params& params);
   // Sorts the tiles of a picture of one layer for shading.
   Result<graph::BufferHandle> declare_shade_tiles(graph::FrameGraph& graph,
                                                   const std::string& prefix, const GBuffer& gbuffer,
@@ -325,7 +332,7 @@ class Renderer {
   // By terms and number of the sun's maps.
   std::map<std::array<std::uint32_t, 2>, gpu::Pipeline> shafts_;
   std::map<std::uint32_t, gpu::Pipeline> skylight_;  // by terms
-  gpu::Pipeline shafts_blur_, focus_, shutter_;
+  gpu::Pipeline shafts_blur_, focus_, shutter_, shutter_tiles_, shutter_reach_;
   gpu::Pipeline band_albedo_;
   std::map<std::uint32_t, gpu::Pipeline> merge_;             // by pictures
   std::map<std::uint32_t, gpu::Pipeline> camera_;            // by terms

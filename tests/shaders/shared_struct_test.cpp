@@ -148,7 +148,7 @@ const std::map<std::string, Offsets>& shared_structs() {
       {"ShutterParams",
        {MEMBER(ShutterParams, exposed), MEMBER(ShutterParams, readout),
         MEMBER(ShutterParams, samples), MEMBER(ShutterParams, farthest_px),
-        MEMBER(ShutterParams, by_lens), MEMBER(ShutterParams, row)}},
+        MEMBER(ShutterParams, by_lens), MEMBER(ShutterParams, tiles), MEMBER(ShutterParams, row)}},
       {"ShadePush", {MEMBER(ShadePush, first_group), MEMBER(ShadePush, first_tile)}},
       {"ShadeTilesPush", {MEMBER(ShadeTilesPush, wide), MEMBER(ShadeTilesPush, high)}},
       {"ParticlePush", {MEMBER(ParticlePush, target_size), MEMBER(ParticlePush, shutter)}},

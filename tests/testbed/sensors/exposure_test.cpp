@@ -1,5 +1,6 @@
 // Focus and shutter on made pictures: an edge out of focus is that of a disk of the thin lens's
-// radius, one that moves is a ramp as long as its way, and a rolling shutter leans it.
+// radius, one that moves is a ramp as long as its way, and a rolling shutter leans it. So does a
+// bar's before what stands still.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -34,24 +35,37 @@ gpu::Image image_of(gpu::Device& device, const char* name, const std::function<V
   return std::move(*image);
 }
 
-// The green of what a pass makes of a step from 0 to 1 at kEdge, beside another even image.
+// The columns of a picture, and its motion and depth.
+struct Columns {
+  std::function<Vec4(int)> light, motion, depth;
+};
+
+// The green of what a pass makes of columns; of a step from 0 to 1 at kEdge, beside another even
+// image.
 class Made {
  public:
   template <class Declare>
-  Made(gpu::Device& device, const Vec4& other, Declare declare) {
+  Made(gpu::Device& device, const Vec4& other, Declare declare)
+      : Made(device,
+             {[](int x) { return Vec4(Vec3(x < kEdge ? 0.0 : 1.0), 1.0); },
+              [=](int) { return other; }, [=](int) { return other; }},
+             declare) {}
+  template <class Declare>
+  Made(gpu::Device& device, const Columns& columns, Declare declare) {
     auto renderer = render::Renderer::create(device);
     auto frames = gpu::Frames::create(device);
     EXPECT_TRUE(renderer.ok() && frames.ok());
-    gpu::Image hdr =
-        image_of(device, "step", [](int x) { return Vec4(Vec3(x < kEdge ? 0.0 : 1.0), 1.0); });
-    gpu::Image beside = image_of(device, "beside", [&](int) { return other; });
+    gpu::Image hdr = image_of(device, "light", columns.light);
+    gpu::Image motion = image_of(device, "motion", columns.motion);
+    gpu::Image depth = image_of(device, "depth", columns.depth);
     const graph::ImportState state{.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
     graph::Executor executor(**frames);
     graph::FrameGraph graph;
     render::GBuffer gbuffer;
     gbuffer.width = kWide;
     gbuffer.height = kHigh;
-    gbuffer.depth = gbuffer.motion = graph.import_image(beside, state);
+    gbuffer.motion = graph.import_image(motion, state);
+    gbuffer.depth = graph.import_image(depth, state);
     const auto out = declare(**renderer, graph, graph.import_image(hdr, state), gbuffer);
     EXPECT_TRUE(out.ok());
     ReadbackPool pool;
@@ -99,6 +113,40 @@ TEST_F(ExposurePasses, AnEdgeOutOfFocusIsThatOfTheThinLenssDisk) {
   }
 }
 
+// A surface at half a metre before one in focus at a metre: the picture before the lens has an edge
+// at kEdge, and the nearer one's spots of 8 pixels spread over the sharp one behind.
+TEST_F(ExposurePasses, ANearEdgeOutOfFocusIsARampOverWhatIsSharpBehindIt) {
+  const Columns near_right{[](int x) { return Vec4(Vec3(x < kEdge ? 0.0 : 1.0), 1.0); },
+                           [](int) { return Vec4(0.0); },
+                           [](int x) { return Vec4(x < kEdge ? 0.05 : 0.1); }};
+  const Made made(device(), near_right, [](render::Renderer& r, auto& graph, auto hdr, auto& g) {
+    return r.declare_focus(graph, "", hdr, g, {0.05f, 1.0f, 8.0f, 12.0f, 200});
+  });
+  // The part of a disk beyond a chord at this share of its radius.
+  const auto beyond = [](double share) {
+    const double s = std::clamp(share, -1.0, 1.0);
+    return (std::acos(s) - s * std::sqrt(1.0 - s * s)) / kPi;
+  };
+  for (std::uint32_t x = 54; x < 75; ++x) {
+    double mean = 0.0;
+    for (std::uint32_t y = 16; y < 48; ++y) mean += made.at(x, y) / 32.0;
+    EXPECT_NEAR(mean, beyond((kEdge - (x + 0.5)) / 8.0), 0.06) << x;
+  }
+}
+
+TEST_F(ExposurePasses, ASharpEdgeBeforeWhatIsOutOfFocusStaysSharp) {
+  const Columns near_right{[](int x) { return Vec4(Vec3(x < kEdge ? 0.0 : 1.0), 1.0); },
+                           [](int) { return Vec4(0.0); },
+                           [](int x) { return Vec4(x < kEdge ? 0.005 : 0.05); }};
+  const Made made(device(), near_right, [](render::Renderer& r, auto& graph, auto hdr, auto& g) {
+    return r.declare_focus(graph, "", hdr, g, {0.05f, 1.0f, 8.0f, 12.0f, 200});
+  });
+  for (const std::uint32_t y : {20u, 31u, 40u}) {
+    EXPECT_LT(made.at(61, y), 0.05);
+    EXPECT_GT(made.at(66, y), 0.95);
+  }
+}
+
 TEST_F(ExposurePasses, WhatMovesBecomesARampAndARollingShutterLeansIt) {
   const auto exposed = [&](shared::ShutterParams params) {
     return Made(device(), Vec4(8.0, 0.0, 0.0, 0.0),
@@ -132,6 +180,82 @@ TEST_F(ExposurePasses, WhatMovesBecomesARampAndARollingShutterLeansIt) {
     EXPECT_NEAR(zoomed.edge(y),
                 kEdge + 8.0 * (std::clamp(2.0 * (y + 0.5) / kHigh - 0.5, 0.0, 1.0) - 0.5), 0.1)
         << y;
+}
+
+// A bar of 26 pixels before what stands still.
+class MovingBar : public ExposurePasses {
+ protected:
+  static constexpr int kFrom = 50, kUntil = 76;
+  static constexpr double kWidth = kUntil - kFrom, kMiddle = 0.5 * (kFrom + kUntil);
+  Made exposed(double motion_px, const shared::ShutterParams& params) {
+    const auto inside = [](int x) { return x >= kFrom && x < kUntil; };
+    return Made(device(),
+                {[=](int x) { return Vec4(Vec3(inside(x) ? 1.0 : 0.0), 1.0); },
+                 [=](int x) { return Vec4(inside(x) ? motion_px : 0.0, 0.0, 0.0, 0.0); },
+                 [=](int x) { return Vec4(inside(x) ? 0.02 : 0.0); }},
+                [=](render::Renderer& r, auto& graph, auto hdr, auto& g) {
+                  return r.declare_shutter(graph, "", hdr, g, params);
+                });
+  }
+  // The light of a row, and its middle.
+  static std::pair<double, double> light(const Made& made, std::uint32_t y) {
+    double sum = 0.0, moment = 0.0;
+    for (std::uint32_t x = 0; x < kWide; ++x) {
+      sum += made.at(x, y);
+      moment += made.at(x, y) * (x + 0.5);
+    }
+    return {sum, moment / sum};
+  }
+};
+
+TEST_F(MovingBar, EachRowOfARollingShutterShowsItWholeWhereItIsThen) {
+  for (const double motion_px : {6.0, 40.0, -40.0}) {
+    const Made made = exposed(
+        motion_px, {.exposed = 0.003f, .readout = 1.0f, .samples = 8, .farthest_px = 32.0f});
+    for (const std::uint32_t y : {0u, 5u, 16u, 32u, 50u, 63u}) {
+      const auto [sum, middle] = light(made, y);
+      const double shift = motion_px * ((y + 0.5) / kHigh - 0.5);
+      EXPECT_NEAR(sum, kWidth, 0.1) << motion_px << ", row " << y;
+      EXPECT_NEAR(middle, kMiddle + shift, 0.1) << motion_px << ", row " << y;
+      for (double x = kFrom + shift + 1.0; x < kUntil + shift - 1.0; x += 1.0)
+        EXPECT_NEAR(made.at(static_cast<std::uint32_t>(x), y), 1.0, 0.01) << motion_px << ": " << x;
+    }
+  }
+}
+
+TEST_F(MovingBar, BlurIsARampAsLongAsItsWayAtBothEdges) {
+  constexpr double kWay = 20.0;
+  const Made made = exposed(2.0 * kWay, {.exposed = 0.5f, .samples = 128, .farthest_px = 32.0f});
+  EXPECT_NEAR(light(made, 20).first, kWidth, 0.2);
+  for (std::uint32_t x = 30; x < 96; ++x) {
+    const double at = x + 0.5;
+    const double wanted = std::min(std::clamp(0.5 + (at - kFrom) / kWay, 0.0, 1.0),
+                                   std::clamp(0.5 - (at - kUntil) / kWay, 0.0, 1.0));
+    EXPECT_NEAR(made.at(x, 20), wanted, 0.03) << x;
+  }
+}
+
+// What stands before it hides it, whatever moves behind.
+TEST_F(MovingBar, PassesBehindWhatIsNearer) {
+  const auto near_by = [](int x) { return x < 40; };
+  const auto inside = [](int x) { return x >= kFrom && x < kUntil; };
+  const Made made(device(),
+                  {[=](int x) {
+                     return Vec4(Vec3(inside(x) ? 1.0 : near_by(x) ? 0.25 : 0.0), 1.0);
+                   },
+                   [=](int x) { return Vec4(inside(x) ? -40.0 : 0.0, 0.0, 0.0, 0.0); },
+                   [=](int x) {
+                     return Vec4(near_by(x) ? 0.05 : inside(x) ? 0.02 : 0.0);
+                   }},
+                  [=](render::Renderer& r, auto& graph, auto hdr, auto& g) {
+                    return r.declare_shutter(
+                        graph, "", hdr, g,
+                        {.exposed = 0.003f, .readout = 1.0f, .samples = 8, .farthest_px = 32.0f});
+                  });
+  const std::uint32_t y = 63;  // the bar lies from 30.3 to 56.3 then
+  for (std::uint32_t x = 0; x < 39; ++x) EXPECT_NEAR(made.at(x, y), 0.25, 0.01) << x;
+  for (std::uint32_t x = 41; x < 55; ++x) EXPECT_NEAR(made.at(x, y), 1.0, 0.01) << x;
+  for (std::uint32_t x = 58; x < kWide; ++x) EXPECT_NEAR(made.at(x, y), 0.0, 0.01) << x;
 }
 
 TEST_F(ExposurePasses, WhatHasNoMotionStaysAsItIs) {
