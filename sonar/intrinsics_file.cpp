@@ -56,6 +56,25 @@ Status check_pinhole(const Json& json, const std::string& path) {
     if (name.find("pinhole") == name.npos && name.find("perspective") == name.npos)
       return refusal(fmt::format("{}: {}", path, key), quoted_json(*at), "a pinhole");
   }
+  // Neritic's own pictures through a lens or a port (meta.json).
+  const auto lens = json.find("lens");
+  if (lens != json.end() && lens->is_object()) {
+    const std::string model =
+        lens->value("model", Json()).is_string() ? (*lens)["model"] : Json("");
+    const bool bends =
+        model != "brown_conrady" || (lens->contains("opencv") && any_not_zero((*lens)["opencv"]));
+    if (bends)
+      return refusal(fmt::format("{}: lens", path), quoted_json(*lens),
+                     "no lens (render that camera without)");
+  }
+  const auto port = json.find("port");
+  if (port != json.end() && port->is_object()) {
+    const bool bends = port->value("kind", Json()) != Json("dome") ||
+                       (port->contains("offset") && any_not_zero((*port)["offset"]));
+    if (bends)
+      return refusal(fmt::format("{}: port", path), quoted_json(*port),
+                     "no port (render that camera without)");
+  }
   return {};
 }
 

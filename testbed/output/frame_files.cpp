@@ -35,7 +35,9 @@ Status FrameFiles::write_folders(const FrameResult& frame) {
     for (std::size_t e = 0; e < camera.eyes.size() && options_.format.datasets.of_cameras(); ++e) {
       const std::string name =
           camera.eyes.size() == 1 ? camera.name : camera.name + (e == 0 ? "_left" : "_right");
-      NERITIC_TRY_STATUS(write_camera(folder, name, camera.eyes[e], frame));
+      NERITIC_TRY_STATUS(
+          write_camera(folder, name, camera.eyes[e], frame,
+                       e == 0 && camera.eyes.size() == 2 ? &camera.eyes[1] : nullptr));
     }
   for (const SonarFrame& sonar : frame.sonars) {
     NERITIC_TRY_STATUS(
@@ -46,7 +48,8 @@ Status FrameFiles::write_folders(const FrameResult& frame) {
 }
 
 Status FrameFiles::write_camera(const std::filesystem::path& folder, const std::string& name,
-                                const ViewImages& eye, const FrameResult& frame) {
+                                const ViewImages& eye, const FrameResult& frame,
+                                const ViewImages* right) {
   NERITIC_TRY_STATUS(write_view(folder / name, eye, facts_, options_.format));
   written_.insert(folder / name);
   const Datasets& datasets = options_.format.datasets;
@@ -59,7 +62,7 @@ Status FrameFiles::write_camera(const std::filesystem::path& folder, const std::
   const std::string picture = (part / "color.png").generic_string();
   if (datasets.has(Dataset::kBoxes))
     NERITIC_TRY_STATUS(write_boxes(folder / name, eye, session_.scene().class_names));
-  if (datasets.has(Dataset::kKitti)) NERITIC_TRY_STATUS(kitti_.add(name, eye, frame.frame));
+  if (datasets.has(Dataset::kKitti)) NERITIC_TRY_STATUS(kitti_.add(name, eye, frame.frame, right));
   if (datasets.has(Dataset::kPanoptic)) NERITIC_TRY_STATUS(panoptic_.add(part, picture, eye));
   return datasets.has(Dataset::kCoco) ? coco_.add(picture, name, eye, frame) : Status();
 }

@@ -36,7 +36,7 @@ class FrameFiles final : public FrameSink {
  private:
   Status write_folders(const FrameResult& frame);
   Status write_camera(const std::filesystem::path& folder, const std::string& name,
-                      const ViewImages& eye, const FrameResult& frame);
+                      const ViewImages& eye, const FrameResult& frame, const ViewImages* right);
   Session& session_;
   FrameFilesOptions options_;
   Survey survey_;

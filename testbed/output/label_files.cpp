@@ -34,6 +34,28 @@ int occlusion_of(double share) {
   return share < 0.1 ? 0 : share < 0.5 ? 1 : 2;
 }
 
+// A projection in KITTI's form: a camera that stands right_m along x from the axes of the labels.
+std::string projection_of(const Intrinsics& k, double right_m) {
+  return fmt::format("{:.9g} 0 {:.9g} {:.9g} 0 {:.9g} {:.9g} 0 0 0 1 0", k.fx, k.cx,
+                     right_m == 0.0 ? 0.0 : -k.fx * right_m, k.fy, k.cy);
+}
+
+// KITTI's colour cameras are 2 and 3, its grey ones 0 and 1 beside them. Pictures are rectified;
+// there is no laser scanner or inertial unit, whose axes are therefore the camera's.
+std::string calibration_of(const ViewImages& view, const ViewImages* right) {
+  const std::string left_p = projection_of(view.intrinsics, 0.0);
+  const std::string right_p =
+      right == nullptr
+          ? left_p
+          : projection_of(right->intrinsics, glm::distance(view.world_from_view.position_m,
+                                                           right->world_from_view.position_m));
+  constexpr const char* kSame = "1 0 0 0 0 1 0 0 0 0 1 0";
+  return fmt::format(
+      "P0: {0}\nP1: {1}\nP2: {0}\nP3: {1}\nR0_rect: 1 0 0 0 1 0 0 0 1\nTr_velo_to_cam: {2}\n"
+      "Tr_imu_to_velo: {2}\n",
+      left_p, right_p, kSame);
+}
+
 }  // namespace
 
 Status write_boxes(const std::filesystem::path& folder, const ViewImages& view,
@@ -65,7 +87,8 @@ Status write_boxes(const std::filesystem::path& folder, const ViewImages& view,
                       "z backwards), world_from_box"}});
 }
 
-Status KittiFiles::add(const std::string& camera, const ViewImages& view, std::uint32_t frame) {
+Status KittiFiles::add(const std::string& camera, const ViewImages& view, std::uint32_t frame,
+                       const ViewImages* right) {
   const std::filesystem::path root = out_ / "kitti" / camera;
   const std::string number = fmt::format("{:06}", frame);
   std::string lines;
@@ -88,10 +111,11 @@ Status KittiFiles::add(const std::string& camera, const ViewImages& view, std::u
   for (const char* folder : {"label_2", "calib", "image_2"})
     NERITIC_TRY_STATUS(make_folder(root / folder));
   NERITIC_TRY_STATUS(write_text(root / "label_2" / (number + ".txt"), lines));
-  const Intrinsics& k = view.intrinsics;
-  NERITIC_TRY_STATUS(write_text(
-      root / "calib" / (number + ".txt"),
-      fmt::format("P2: {:.9g} 0 {:.9g} 0 0 {:.9g} {:.9g} 0 0 0 1 0\n", k.fx, k.cx, k.fy, k.cy)));
+  NERITIC_TRY_STATUS(write_text(root / "calib" / (number + ".txt"), calibration_of(view, right)));
+  if (right != nullptr && !right->color.empty()) {
+    NERITIC_TRY_STATUS(make_folder(root / "image_3"));
+    NERITIC_TRY_STATUS(scene::write_png8(root / "image_3" / (number + ".png"), right->color));
+  }
   if (view.color.empty()) return {};
   return scene::write_png8(root / "image_2" / (number + ".png"), view.color);
 }

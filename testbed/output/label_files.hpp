@@ -19,13 +19,16 @@ Status write_boxes(const std::filesystem::path& folder, const ViewImages& view,
 
 // KITTI's object detection benchmark (Geiger, Lenz and Urtasun 2012, devkit): label_2/N.txt with
 // type, truncation, occlusion, alpha, the box in pixels, height, width, length, the middle of the
-// box's underside in camera axes (x right, y down, z ahead), and the heading about y; calib/N.txt
-// with P2, 3 x 4; image_2/N.png where there is a picture.
+// box's underside in camera axes (x right, y down, z ahead), and the heading about y; calib/N.txt;
+// image_2/N.png where there is a picture. A stereo pair's left eye has the right one's pictures as
+// image_3/N.png, and its place in P3.
 class KittiFiles {
  public:
   KittiFiles(std::filesystem::path out, std::map<std::uint16_t, std::string> class_names)
       : out_(std::move(out)), class_names_(std::move(class_names)) {}
-  Status add(const std::string& camera, const ViewImages& view, std::uint32_t frame);
+  // right: of a pair whose left eye the view is; nullptr: none.
+  Status add(const std::string& camera, const ViewImages& view, std::uint32_t frame,
+             const ViewImages* right = nullptr);
 
  private:
   std::filesystem::path out_;

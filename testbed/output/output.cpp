@@ -37,10 +37,16 @@ void add_camera(const ViewImages& view, nlohmann::json& meta) {
     const auto& k = view.lens->k;
     const auto& p = view.lens->p;
     const bool fisheye = view.lens->model == scene::LensModel::kFisheye;
-    meta["lens"] = {{"model", fisheye ? "fisheye" : "brown_conrady"},
-                    {"opencv", fisheye ? nlohmann::json{k[0], k[1], k[2], k[3]}
-                                       : nlohmann::json{k[0], k[1], p[0], p[1], k[2]}}};
     const scene::Port& port = view.lens->port;
+    const auto is_zero = [](double v) { return v == 0.0; };
+    const bool bends =
+        fisheye || !std::ranges::all_of(k, is_zero) || !std::ranges::all_of(p, is_zero);
+    // A port bends more than these coefficients say, and without a lens they say nothing.
+    if (bends || port.kind == scene::PortKind::kNone)
+      meta["lens"] = {{"model", fisheye ? "fisheye" : "brown_conrady"},
+                      {port.kind == scene::PortKind::kNone ? "opencv" : "opencv_in_air",
+                       fisheye ? nlohmann::json{k[0], k[1], k[2], k[3]}
+                               : nlohmann::json{k[0], k[1], p[0], p[1], k[2]}}};
     if (port.kind != scene::PortKind::kNone)
       meta["port"] = {{"kind", scene::kPortNames[static_cast<int>(port.kind)]},
                       {"offset", port.offset},

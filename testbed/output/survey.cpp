@@ -191,6 +191,17 @@ Status Survey::add(const FrameResult& result, std::uint32_t number, double time_
   return {};
 }
 
+Status check_picture_camera(const scene::Sonar& sonar, const Pose& world_from_camera) {
+  const Vec3 down = world_from_camera.rotation * Vec3(0, 0, -1);
+  if (down.y > -kStraightDown)
+    return refusal(
+        fmt::format("sonar {}: picture_camera", sonar.name),
+        fmt::format("{}, which looks {:.0f} degrees off straight down", sonar.picture_camera,
+                    degrees(std::acos(std::clamp(-down.y, -1.0, 1.0)))),
+        fmt::format("at most {:.0f} degrees", degrees(std::acos(kStraightDown))));
+  return {};
+}
+
 // The image-based line of the same ping, from what the named camera sees.
 Status Survey::Record::add_picture(const FrameResult& result, const Pose& world_from_sonar,
                                    double time_s) {
@@ -200,12 +211,7 @@ Status Survey::Record::add_picture(const FrameResult& result, const Pose& world_
   if (!eye || eye->color.empty() || eye->depth.empty())
     return refusal(fmt::format("sonar {}: picture_camera", sonar.name), sonar.picture_camera,
                    "a camera of the scene with its picture and depth");
-  const Vec3 down = eye->world_from_view.rotation * Vec3(0, 0, -1);
-  if (down.y > -kStraightDown)
-    return refusal(fmt::format("sonar {}: picture_camera", sonar.name),
-                   fmt::format("{}, which looks {:.0f} degrees off straight down",
-                               sonar.picture_camera, degrees(std::acos(-down.y))),
-                   fmt::format("at most {:.0f} degrees", degrees(std::acos(kStraightDown))));
+  NERITIC_TRY_STATUS(check_picture_camera(sonar, eye->world_from_view));
   const sonar::SeabedPicture picture{
       sonar::brightness_of(eye->color),
       {eye->intrinsics.fx, eye->intrinsics.fy, eye->intrinsics.cx, eye->intrinsics.cy},

@@ -21,6 +21,9 @@ struct SurveyOptions {
   bool tracks = true;         // false: boxes alone, which one frame has too
 };
 
+// kBadInput where a side-scan's picture camera does not look straight down.
+Status check_picture_camera(const scene::Sonar& sonar, const Pose& world_from_camera);
+
 class Survey {
  public:
   // The scene tells the sonars' kinds, the classes' names and where the true bottom lies (its

@@ -221,5 +221,54 @@ TEST_F(RenderData, ANameThatIsNoneOrThatNothingGivesIsRefusedWithTheNames) {
   EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
+TEST_F(RenderData, APortsBendingIsNotToldAsALensThatBendsNothing) {
+  const auto meta_of = [&](const std::string& keys) {
+    EXPECT_TRUE(write_text(folder_ / "scene.toml", std::string(kScene) +
+                                                       "[[cameras]]\nname = \"bent\"\nwidth = "
+                                                       "16\nheight = 16\n" +
+                                                       keys)
+                    .ok());
+    EXPECT_TRUE(render("out", {"--only", "depth", "--sensor", "bent"}).ok());
+    return parse_json(read_text(folder_ / "out/frame_0000/bent/meta.json").value()).value();
+  };
+  const auto port = meta_of("port = { kind = \"flat\" }\n");
+  EXPECT_FALSE(port.contains("lens")) << port["lens"];
+  EXPECT_EQ(port["port"]["kind"], "flat");
+  const auto both =
+      meta_of("port = { kind = \"flat\" }\nlens = { model = \"brown_conrady\", k = [-0.1] }\n");
+  EXPECT_FALSE(both["lens"].contains("opencv"));
+  EXPECT_EQ(both["lens"]["opencv_in_air"][0], -0.1);
+  const auto lens = meta_of("lens = { model = \"brown_conrady\", k = [-0.1] }\n");
+  EXPECT_EQ(lens["lens"]["opencv"][0], -0.1);
+}
+
+TEST_F(RenderData, APictureCameraThatDoesNotSuitItsSideScanIsRefusedBeforeTheFirstFrame) {
+  const auto said = [&](const std::string& keys, std::vector<std::string> words) {
+    EXPECT_TRUE(write_text(folder_ / "scene.toml",
+                           std::string(kScene) +
+                               "[[cameras]]\nname = \"down\"\nwidth = 16\nheight = 16\n"
+                               "position_m = [0, -10, 0]\n" +
+                               keys +
+                               "[[sonars]]\nname = \"side\"\nkind = \"sidescan\"\nrange_m = [1, 10]"
+                               "\nposition_m = [0, -10, 0]\nbins = [32, 4, 32]\nrate_hz = 10\n"
+                               "picture_camera = \"down\"\n")
+                    .ok());
+    words.insert(words.end(), {"--frames", "2", "--sensor", "side"});
+    const auto result = render("out", words);
+    EXPECT_EQ(fs::exists(folder_ / "out/frame_0000"), result.ok());
+    return result.ok() ? std::string() : result.error().message;
+  };
+  EXPECT_EQ(said("", {"--sensor", "down"}),
+            "sonar side: picture_camera: found down, which looks 90 degrees off straight down; "
+            "accepted: at most 15 degrees");
+  EXPECT_EQ(said("pitch_deg = -90\n", {}),
+            "sonar side: picture_camera: found down; accepted: a camera of the scene that --sensor "
+            "names too");
+  EXPECT_EQ(said("pitch_deg = -90\nrate_hz = 5\n", {"--sensor", "down", "--own-rates"}),
+            "sonar side: picture_camera: found down at 5 Hz; accepted: a camera of 10 Hz or more, "
+            "as the sonar has (--own-rates)");
+  EXPECT_EQ(said("pitch_deg = -90\n", {"--sensor", "down"}), "");
+}
+
 }  // namespace
 }  // namespace neritic

@@ -166,6 +166,23 @@ TEST_F(SonarInputs, CameraInfoOfRosAndOpencvAreIntrinsics) {
   EXPECT_NE(bent.find("bent.yaml: D: found [0.1,0,0,0,0]; accepted: no distortion"),
             std::string::npos)
       << bent;
+  // What Neritic's meta.json says of a lens and of a port.
+  const std::string pinhole = R"({"fx": 60, "fy": 60, "cx": 32, "cy": 24, )";
+  for (const char* none : {R"("lens": {"model": "brown_conrady", "opencv": [0, 0, 0, 0, 0]}})",
+                           R"("port": {"kind": "dome", "offset": 0.0, "index": 1.34}})"}) {
+    write("meta.json", pinhole + none);
+    EXPECT_EQ(image(depth + Words{"--intrinsics", at("meta.json")}), wanted) << none;
+  }
+  for (const auto& [bends, found] :
+       {std::pair{R"("lens": {"model": "brown_conrady", "opencv": [-0.2, 0, 0, 0, 0]}})",
+                  "lens: found"},
+        {R"("lens": {"model": "fisheye", "opencv": [0, 0, 0, 0]}})", "lens: found"},
+        {R"("port": {"kind": "flat", "offset": 0.0, "index": 1.34}})", "port: found"},
+        {R"("port": {"kind": "dome", "offset": 0.3, "index": 1.34}})", "port: found"}}) {
+    write("meta.json", pinhole + bends);
+    const std::string said = refused(depth + Words{"--intrinsics", at("meta.json")});
+    EXPECT_NE(said.find(std::string("meta.json: ") + found), std::string::npos) << said;
+  }
   write("torn.yaml", "K: [60, 0\nwidth: 64\n");
   const std::string torn = refused(depth + Words{"--intrinsics", at("torn.yaml")});
   EXPECT_NE(torn.find("torn.yaml: line 1: found"), std::string::npos) << torn;

@@ -119,6 +119,30 @@ Status check_camera_data(const scene::Scene& scene, const LoopSensors& sensors,
   return {};
 }
 
+// What a side-scan's image-based record needs of its camera, as far as it is known before the first
+// frame.
+Status check_picture_cameras(const scene::Scene& scene, const LoopSensors& sensors,
+                             const scene::SimulatedMotion* simulated, double time_s) {
+  const scene::MotionSource motion(scene, simulated);
+  for (const std::size_t i : sensors.sonars) {
+    const scene::Sonar& sonar = scene.sonars[i];
+    if (sonar.picture_camera.empty()) continue;
+    const std::string where = fmt::format("sonar {}: picture_camera", sonar.name);
+    const auto at = std::ranges::find_if(sensors.cameras, [&](std::size_t k) {
+      return scene.cameras[k].name == sonar.picture_camera;
+    });
+    if (at == sensors.cameras.end())
+      return refusal(where, sonar.picture_camera, "a camera of the scene that --sensor names too");
+    const scene::Camera& camera = scene.cameras[*at];
+    if (sensors.own_rates && camera.rate_hz < sonar.rate_hz)
+      return refusal(where, fmt::format("{} at {:g} Hz", camera.name, camera.rate_hz),
+                     fmt::format("a camera of {:g} Hz or more, as the sonar has (--own-rates)",
+                                 sonar.rate_hz));
+    NERITIC_TRY_STATUS(check_picture_camera(sonar, motion.world_from(camera.mount, time_s)));
+  }
+  return {};
+}
+
 // Drops the sensors that give nothing of what is written.
 void drop_unused(const scene::Scene& scene, const Datasets& datasets, LoopSensors& sensors) {
   if (!datasets.of_sonars()) sensors.sonars.clear();
@@ -408,6 +432,9 @@ Result<std::string> render_once(const RenderFlags& asked, RenderedRun& told) {
   }
   // One frame makes no track, but boxes.
   const bool tracks = flags.frames > 1 || flags.track_only;
+  if (tracks && chosen.format.datasets.has(Dataset::kSonar))
+    NERITIC_TRY_STATUS(check_picture_cameras(session->scene(), sensors,
+                                             physics ? &physics->motion() : nullptr, flags.time_s));
   FrameFiles files(*session, {flags.out, flags.scene, !flags.track_only, chosen.format,
                               SurveyOptions{flags.chart_cell_m, tracks}});
   FirstFrame first(flags, *session);

@@ -304,6 +304,24 @@ TEST_F(CameraTermsTest, BoxesHaveTheSizesPlacesAndOcclusionOfThings) {
   const test::ScratchFolder scratch;
   KittiFiles kitti(scratch.path(), scene.class_names);
   ASSERT_TRUE(kitti.add("eye", eye, 3).ok());
+  const auto& k = eye.intrinsics;
+  const auto calibration = [&](const std::string& p3) {
+    const std::string p2 =
+        fmt::format("{:.9g} 0 {:.9g} 0 0 {:.9g} {:.9g} 0 0 0 1 0", k.fx, k.cx, k.fy, k.cy);
+    constexpr const char* same = "1 0 0 0 0 1 0 0 0 0 1 0";
+    return fmt::format(
+        "P0: {0}\nP1: {1}\nP2: {0}\nP3: {1}\nR0_rect: 1 0 0 0 1 0 0 0 1\nTr_velo_to_cam: {2}\n"
+        "Tr_imu_to_velo: {2}\n",
+        p2, p3.empty() ? p2 : p3, same);
+  };
+  EXPECT_EQ(read_text(scratch / "kitti/eye/calib/000003.txt").value(), calibration(""));
+  // A point at x, z of the left eye is at fx (x - b) / z + cx of the right one.
+  ViewImages right = eye;
+  right.world_from_view.position_m += eye.world_from_view.rotation * Vec3(0.25, 0.0, 0.0);
+  ASSERT_TRUE(kitti.add("eyes_left", eye, 3, &right).ok());
+  EXPECT_EQ(read_text(scratch / "kitti/eyes_left/calib/000003.txt").value(),
+            calibration(fmt::format("{:.9g} 0 {:.9g} {:.9g} 0 {:.9g} {:.9g} 0 0 0 1 0", k.fx, k.cx,
+                                    -0.25 * k.fx, k.fy, k.cy)));
   NERITIC_ASSERT_OK(const std::string text, read_text(scratch / "kitti/eye/label_2/000003.txt"));
   std::istringstream line(text);
   std::string type;
