@@ -100,11 +100,31 @@ TextureRef parse_texture_ref(Loading& loading, Field field) {
   return out;
 }
 
+// Numbers that glTF lets lie in [0, 1]; others become the nearer end, with a note.
+template <std::size_t N>
+std::array<double, N> units(Field field) {
+  std::array<double, N> ones;
+  ones.fill(1.0);
+  auto out = field.numbers<N>(ones);
+  for (double& v : out) {
+    if (v < 0.0 || v > 1.0)
+      field.note_with("{:g} is outside [0, 1], {} is used", v, v < 0.0 ? 0 : 1);
+    v = std::clamp(v, 0.0, 1.0);
+  }
+  return out;
+}
 Vec3f color_of(const std::array<double, 3>& rgb) {
   return glm::clamp(Vec3f(rgb[0], rgb[1], rgb[2]), 0.0f, 1.0f);
 }
+Vec4f base_color_of(Field field) {
+  const auto rgba = units<4>(field);
+  return Vec4f(rgba[0], rgba[1], rgba[2], rgba[3]);
+}
 float unit(Field field, float fallback) {
-  return std::clamp(field.number_f(fallback), 0.0f, 1.0f);
+  const float value = field.number_f(fallback);
+  if (value < 0.0f || value > 1.0f)
+    field.note_with("{:g} is outside [0, 1], {} is used", value, value < 0.0f ? 0 : 1);
+  return std::clamp(value, 0.0f, 1.0f);
 }
 
 AlphaMode parse_alpha_mode(Field field) {
@@ -137,11 +157,10 @@ MixedPictures parse_mixed(Loading& loading, Field field, Material& out) {
   const Field old = field.extension("KHR_materials_pbrSpecularGlossiness");
   mixed.specular_glossiness = old.present();
   if (!old.present()) return mixed;
-  mixed.specular = color_of(old["specularFactor"].numbers<3>({1.0, 1.0, 1.0}));
+  mixed.specular = color_of(units<3>(old["specularFactor"]));
   mixed.glossiness = unit(old["glossinessFactor"], 1.0f);
   mixed.specular_texture = parse_texture_ref(loading, old["specularGlossinessTexture"]);
-  const auto diffuse = old["diffuseFactor"].numbers<4>({1.0, 1.0, 1.0, 1.0});
-  out.base_color = glm::clamp(Vec4f(diffuse[0], diffuse[1], diffuse[2], diffuse[3]), 0.0f, 1.0f);
+  out.base_color = base_color_of(old["diffuseFactor"]);
   out.base_color_texture = parse_texture_ref(loading, old["diffuseTexture"]);
   out.metallic_roughness_texture = TextureRef{};
   return mixed;
@@ -151,8 +170,7 @@ Material parse_material(Loading& loading, Field field) {
   Material out;
   out.name = field["name"].text();
   const Field pbr = field["pbrMetallicRoughness"];
-  const auto base = pbr["baseColorFactor"].numbers<4>({1.0, 1.0, 1.0, 1.0});
-  out.base_color = glm::clamp(Vec4f(base[0], base[1], base[2], base[3]), 0.0f, 1.0f);
+  out.base_color = base_color_of(pbr["baseColorFactor"]);
   out.metallic = unit(pbr["metallicFactor"], 1.0f);
   out.roughness = unit(pbr["roughnessFactor"], 1.0f);
   out.base_color_texture = parse_texture_ref(loading, pbr["baseColorTexture"]);

@@ -190,6 +190,23 @@ class Runs(unittest.TestCase):
                 scenario.Scenario(path, {"echo_sounder": echo_sounder}, sets=[text])
 
 
+class Refusals(unittest.TestCase):
+    def test_each_name_is_told_once_with_the_nearest_marked(self):
+        with self.assertRaises(scenario.Refused) as caught:
+            scenario.path_of("ligth")
+        told = str(caught.exception)
+        self.assertIn("light (the nearest)", told)
+        self.assertEqual(told.count("light"), 1, told)
+
+    def test_a_scene_is_no_scenario(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "scene.toml")
+            with open(path, "w") as file:
+                file.write('title = "A reef"\n[[cameras]]\nname = "eye"\n')
+            with self.assertRaisesRegex(scenario.Refused, r"^.*scene\.toml: found a scene; accepted: a scenario, .*$"):
+                scenario.Scenario(path, {})
+
+
 class Measures(unittest.TestCase):
     """Of a task, by its formulas."""
 

@@ -239,6 +239,14 @@ TEST(GltfAudit, EachBrokenValueIsTheOneNote) {
       {"meshes[0].primitives[0].attributes.NORMAL: 1 of 4 normals are not of length 1, they are "
        "made so",
        [&](Builder& b) { normals(b, 3.0f); }},
+      {"materials[0].pbrMetallicRoughness.baseColorFactor: 1.5 is outside [0, 1], 1 is used",
+       [&](Builder& b) {
+         b.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1.5, 0.5, 0.5, 1.0};
+       }},
+      {"materials[0].pbrMetallicRoughness.roughnessFactor: -2 is outside [0, 1], 0 is used",
+       [&](Builder& b) {
+         b.json["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = -2.0;
+       }},
   };
   for (std::size_t i = 0; i < values.size(); ++i) {
     SCOPED_TRACE(fmt::format("{}: {}", i, values[i].words));

@@ -27,6 +27,10 @@ class Failed(Exception):
     """It could not be done here. Exit status 1."""
 
 
+# Keys of a scene's file (assets/scenes/README.md).
+SCENE_TABLES = {"include", "title", "cameras", "sonars", "objects", "vehicles", "divers", "terrain", "water", "sun"}
+
+
 def names():
     """The shipped scenarios, in the order of `all`."""
     order = ["imaging", "profiling", "echo_sounder", "shark"]
@@ -42,8 +46,8 @@ def path_of(name):
         return name
     if name not in names():
         near = difflib.get_close_matches(name, names(), 1)
-        raise Refused(f"experiment: found \"{name}\"; accepted: {near[0] + ' (the nearest), ' if near else ''}"
-                      f"{', '.join(names())}, all, or a .toml file")
+        known = [n + " (the nearest)" if n in near else n for n in names()]
+        raise Refused(f"experiment: found \"{name}\"; accepted: {', '.join(known)}, all, or a .toml file")
     return os.path.join(SHIPPED, name + ".toml")
 
 
@@ -133,6 +137,9 @@ class Scenario:
         self.path = path
         self.name = os.path.splitext(os.path.basename(path))[0]
         self.data = data = copy.deepcopy(read(path))
+        if "experiment" not in data and SCENE_TABLES & data.keys():
+            raise Refused(f"{path}: found a scene; accepted: a scenario, whose table [experiment] names its kind "
+                          "(tools/experiment/README.md)")
         head = data.get("experiment", {})
         own = ["task", "stages", "measures"] if isinstance(head, dict) and head.get("kind") == "task" else []
         check_keys(path, data, ["experiment", "settings", "vary", "factors", "criteria", *own])
