@@ -108,9 +108,8 @@ float weight_towards(vec3 direction, bool turned_over) {
   return mix(weight.x, weight.y, part.x);
 }
 
-// A row's weight by where its ray leaves; the solid angle stays the row's own.
-float bent_weight(float range_m, vec3 direction, uint row) {
-  vec3 leaves = launched(range_m, direction);
+// A row's weight by where its sound leaves; the solid angle stays the row's own.
+float weight_leaving(vec3 leaves, uint row) {
   float weight = weight_towards(leaves, kGhost != 0);
   if (kGhost != 0 || echo.solid_angle == 0) return weight;
   float up = dot(leaves, echo.head_up);
@@ -121,6 +120,14 @@ float bent_weight(float range_m, vec3 direction, uint row) {
 float pattern_of(ivec2 beam) {
   if (beam.x < 0) return 0.0;
   return kWeighted != 0 ? texelFetch(weights, ivec2(beam.x, int(c.n_elevation) - 1 - beam.y), 0).r : 1.0;
+}
+
+// Whether a leg in a direction from the sonar meets what the sonar sees drawn larger than it is.
+bool meets(SonarDrawnLarger thing, vec3 direction) {
+  float azimuth = atan(dot(direction, echo.head_right), -dot(direction, echo.head_back));
+  float elevation = asin(clamp(dot(direction, echo.head_up), -1.0, 1.0));
+  vec4 own = thing.direct_rad;
+  return abs(azimuth - own.x) < own.y && elevation > own.z && elevation < own.w;
 }
 
 // Something hides a leg where it is nearer by more than this part of it, and by two bins.
@@ -138,6 +145,12 @@ bool is_clear(ivec2 beam, vec3 direction, float leg_m, uint through_class) {
     float ty = (c.cy - (float(at.y) + 0.5)) / c.fy;
     float range_m = planar_metres(texelFetch(direct_depth, at, 0).r) * sqrt(1.0 + s.pixel_tan * s.pixel_tan + ty * ty);
     if (!(range_m > 0.0) || range_m > nearest_m) return true;
+    if (kLarger != 0) {
+      uint entry = larger_of(texelFetch(direct_label, at, 0).y);
+      if (entry < c.drawn_larger && (drawn_larger[entry].views & kSonarLargerDirect) != 0 &&
+          !meets(drawn_larger[entry], direction))
+        return true;
+    }
     if (through_class != 0 && texelFetch(direct_label, at, 0).x == through_class) return true;
   }
   return false;
@@ -241,6 +254,12 @@ vec3 point_at(SonarColumn s, BeamHit hit, RowEcho e, float bin_range_m, out floa
   return mix(near, far, part);
 }
 
+// The place of a direction from the eye, in rows.
+float place_of(SonarColumn s, vec3 direction) {
+  float rows_up = (asin(clamp(dot(direction, s.up), -1.0, 1.0)) - echo.elevation_min_rad) * echo.rows_per_rad;
+  return clamp(rows_up, 0.0, float(c.n_elevation));
+}
+
 // Notes a row's power in the bins that its height spans, for the scatterers there.
 void share_out_coherent(SonarColumn s, uint column, uint row, BeamHit hit, RowEcho e, float heard, inout ivec2 noted) {
   float drawn_out = e.range_m / hit.range_m;
@@ -258,8 +277,9 @@ void share_out_coherent(SonarColumn s, uint column, uint row, BeamHit hit, RowEc
     vec2 within_m = vec2(max(range_at(bin), ends.x), min(range_at(bin + 1), ends.y));
     float part;
     vec3 point = point_at(s, hit, e, 0.5 * (within_m.x + within_m.y), part) / drawn_out;
+    if (hit.larger) point = hit.towards * hit.range_m;
     vec2 within = vec2(bin_at(within_m.x), bin_at(within_m.y));
-    float place = float(row) + (rising ? part : 1.0 - part);
+    float place = hit.larger ? place_of(s, hit.towards) : float(row) + (rising ? part : 1.0 - part);
     if (power > 0.0) note(column, point, place, heard, within, bin, power);
     add_key(uint(bin) * c.n_azimuth + column, power, e.label);
   }
@@ -317,13 +337,14 @@ void main() {
       look = after;
       after = look_at(s, min(row + 1, c.n_elevation - 1));
     } else look = look_at(s, row);
-    BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0), false);
+    BeamHit hit = no_hit();
     if (s.pixel >= 0) hit = beam_hit(s, look, ranges_beside(s, row, before, look, after));
     float power = hit.strength;
     uvec2 label = uvec2(0);
     float range_m = hit.range_m;
     vec3 eye = vec3(0.0);
-    if (kCorrected != 0 || kGhost != 0 || kMoving != 0 || kCoherent != 0) eye = beam_direction(s, row);
+    if (kCorrected != 0 || kGhost != 0 || kMoving != 0 || kCoherent != 0 || kLarger != 0) eye = beam_direction(s, row);
+    if (hit.larger) eye = hit.towards;
     Legs legs = Legs(eye, eye, range_m, range_m);
     if (kGhost != 0) {
       GhostPath ghost = GhostPath(0.0, 0.0, vec3(0.0), vec3(0.0));
@@ -334,9 +355,11 @@ void main() {
     float heard_m = heard_of(legs, range_m);
     bool leaves = true;  // within the beam
     if (kBent != 0) {
-      float weight = range_m > 0.0 ? bent_weight(legs.there_m, legs.there, row) : 0.0;
+      float weight = range_m > 0.0 ? weight_leaving(launched(legs.there_m, legs.there), row) : 0.0;
       power *= weight;
       leaves = weight > 0.0;
+    } else if (kWeighted != 0 && hit.larger) {
+      power *= range_m > 0.0 ? weight_leaving(legs.there, row) : 0.0;
     } else if (kWeighted != 0) power *= texelFetch(weights, ivec2(column, row), 0).r;
     if (kReflect != 0 || kLabels != 0 || kRecords != 0) label = texelFetch(label_image, hit.at, 0).xy;
     if (kReflect != 0) power *= label.y < c.reflectivities ? abs(reflectivity[label.y]) : 1.0;
@@ -358,7 +381,7 @@ void main() {
     uint cell = uint(e.bin) * c.n_azimuth + column;
     if (kCoherent != 0) {
       int bin = int(e.bin);
-      note(column, eye * hit.range_m, float(row) + 0.5, heard_m / range_m, vec2(e.bin), bin, e.power);
+      note(column, eye * hit.range_m, hit.larger ? place_of(s, eye) : float(row) + 0.5, heard_m / range_m, vec2(e.bin), bin, e.power);
       noted = ivec2(min(noted.x, bin), max(noted.y, bin));
     } else {
       add_power(cell, uint(e.power * echo.sum_scale + 0.5));

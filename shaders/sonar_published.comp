@@ -31,6 +31,7 @@ void add_pixel(ivec3 at, SonarColumn s, uint column, uint stamp) {
   float tx = (float(at.x) + 0.5 - c.cx) / c.fx, ty = (c.cy - (float(at.y) + 0.5)) / c.fy;
   float length_of = sqrt(1.0 + tx * tx + ty * ty);
   vec3 right = cross(s.forward, s.up);
+  if (planar * (s.forward.y + tx * right.y + ty * s.up.y) > c.surface_m) return;  // sound does not leave the water
   float along = tx * dot(n, right) + ty * dot(n, s.up) + dot(n, s.forward);
   float bin = (planar * length_of - c.range_min_m) * c.bins_per_m;
   if (!(bin >= 0.0 && bin < float(c.n_range))) return;

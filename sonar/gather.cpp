@@ -81,24 +81,33 @@ Status SonarGather::check(const gpu::Device& device) const {
                    "plane or nearest (published is without terms)");
   NERITIC_CHECK(options_.gather != Gather::kPublished || layout_.lean == 0.0,
                 "the published gather takes upright images");
-  if (const std::uint64_t most = limits.maxStorageBufferRange; sums_bytes() > most)
+  if (const std::uint64_t most = limits.maxStorageBufferRange; sums_bytes() > most) {
+    const double part = static_cast<double>(most) / static_cast<double>(sums_bytes());
+    const Limits& l = grid_.limits;
     return failure(
         ErrorCode::kUnsupported, "sonar image: {}",
         found_accepted(
             fmt::format("{} x {} bins, {} bytes", grid_.bins.range, grid_.bins.azimuth,
                         sums_bytes()),
-            fmt::format(
-                "{} bytes on this device: at most {:.0f} range bins (with a quality, a range "
-                "that is as much shorter), or fewer beams or samples of a beam",
-                most,
-                std::floor(grid_.bins.range *
-                           (static_cast<double>(most) / static_cast<double>(sums_bytes()))))));
-  if (options_.echo && options_.echo->records && records_bytes() > limits.maxStorageBufferRange)
+            fmt::format("{} bytes on this device: at most {:.0f} range bins, or (with a quality) "
+                        "range_m = [{:g}, {:.4g}], or fewer beams or samples of a beam",
+                        most, std::floor(grid_.bins.range * part), l.range_min_m,
+                        l.range_min_m + 0.99 * part * (l.range_max_m - l.range_min_m))));
+  }
+  if (options_.echo && options_.echo->records && records_bytes() > limits.maxStorageBufferRange) {
+    const std::uint64_t most = limits.maxStorageBufferRange;
+    const double part = static_cast<double>(most) / static_cast<double>(records_bytes());
+    const Limits& l = grid_.limits;
     return failure(
         ErrorCode::kUnsupported, "sonar: labels.energy: {}",
-        found_accepted(fmt::format("{} columns x {} bins of elevation, {} bytes",
-                                   grid_.bins.azimuth, grid_.bins.elevation, records_bytes()),
-                       fmt::format("{} bytes on this device", limits.maxStorageBufferRange)));
+        found_accepted(
+            fmt::format("{} columns x {} bins of elevation, {} bytes", grid_.bins.azimuth,
+                        grid_.bins.elevation, records_bytes()),
+            fmt::format("{} bytes on this device: {:.1f} degrees of elevation_deg or {:.1f} of "
+                        "azimuth_deg, a coarser quality, or no labels.energy",
+                        most, std::floor(degrees(l.elevation_max_rad - l.elevation_min_rad) * part),
+                        std::floor(degrees(l.azimuth_max_rad - l.azimuth_min_rad) * part))));
+  }
   if (grid_.bins.elevation > limits.maxImageDimension2D)
     return failure(ErrorCode::kUnsupported, "sonar: {}",
                    found_accepted(fmt::format("{} bins of elevation", grid_.bins.elevation),
@@ -257,6 +266,9 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
       pass.in.strengths.empty()
           ? gpu::UploadSlice{buffer_or_none(pass.in.reflectivity), 0, VK_WHOLE_SIZE}
           : commands.upload(pass.in.strengths);
+  const gpu::UploadSlice larger = pass.in.larger.empty()
+                                      ? gpu::UploadSlice{no_buffer_.handle(), 0, VK_WHOLE_SIZE}
+                                      : commands.upload(pass.in.larger);
   const Intrinsics& k = layout_.intrinsics;
   shared::SonarPush push{
       .n_range = grid_.bins.range,
@@ -279,7 +291,9 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
                             ? pass.in.reflectivities
                             : static_cast<std::uint32_t>(pass.in.strengths.size()),
       .lean = static_cast<float>(layout_.lean),
-      .azimuth_step_rad = static_cast<float>(grid_.azimuth_step_rad())};
+      .azimuth_step_rad = static_cast<float>(grid_.azimuth_step_rad()),
+      .drawn_larger = static_cast<std::uint32_t>(pass.in.larger.size()),
+      .surface_m = static_cast<float>(pass.in.surface_m)};
   const graph::ImageHandle depth = layout_.packed ? pass.in.normals : pass.in.depth;
   std::vector<gpu::BoundResource> bound{
       gpu::bound_buffer(shared::kSonarBindColumns, column_slice.buffer, column_slice.offset,
@@ -296,7 +310,8 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
       gpu::bound_buffer(shared::kSonarBindScratch, words_or_none(pass.scratch)),
       gpu::bound_texel_buffer(shared::kSonarBindSumTexels, texels_or_none(pass.out.sums)),
       gpu::bound_texel_buffer(shared::kSonarBindKeyTexels, texels_or_none(pass.out.keys)),
-      gpu::bound_texel_buffer(shared::kSonarBindScratchTexels, texels_or_none(pass.scratch))};
+      gpu::bound_texel_buffer(shared::kSonarBindScratchTexels, texels_or_none(pass.scratch)),
+      gpu::bound_buffer(shared::kSonarBindLarger, larger.buffer, larger.offset, larger.size)};
   if (options_.echo) {
     const gpu::UploadSlice echo = commands.upload(&pass.in.echo, sizeof pass.in.echo);
     const gpu::UploadSlice correction =

@@ -101,6 +101,11 @@ class SonarGather {
     // Instead of that table, until the run. An instance that is drawn larger than it is has a
     // negative value, whose size is the strength a sample.
     std::span<const float> strengths = {};
+    // The water's surface over the eye, m along the y of the normals' axes: what lies above it does
+    // not echo.
+    double surface_m = 1e30;
+    // Where those instances are, until the run; by ascending labels.
+    std::span<const shared::SonarDrawnLarger> larger = {};
     // Ghosts: what the sonar itself sees, of the same sizes; CHECKed to be there.
     graph::ImageHandle direct_depth, direct_labels;
     // Sonar axes from the axes that the normals are in (world axes of a scene's G-buffer).

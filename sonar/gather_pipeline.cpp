@@ -10,7 +10,7 @@
 namespace neritic::sonar {
 namespace {
 
-constexpr std::array<gpu::BindingDesc, 19> kBindings{
+constexpr std::array<gpu::BindingDesc, 20> kBindings{
     {{shared::kSonarBindColumns, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
      {shared::kSonarBindRows, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
      {shared::kSonarBindDepth, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
@@ -23,6 +23,7 @@ constexpr std::array<gpu::BindingDesc, 19> kBindings{
      {shared::kSonarBindSumTexels, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1},
      {shared::kSonarBindKeyTexels, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1},
      {shared::kSonarBindScratchTexels, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1},
+     {shared::kSonarBindLarger, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
      // For a gather with terms only.
      {shared::kSonarBindEcho, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
      {shared::kSonarBindWeights, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
@@ -31,7 +32,7 @@ constexpr std::array<gpu::BindingDesc, 19> kBindings{
      {shared::kSonarBindRecords, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
      {shared::kSonarBindDirectDepth, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
      {shared::kSonarBindDirectLabel, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1}}};
-constexpr std::size_t kPlainBindings = 12;
+constexpr std::size_t kPlainBindings = 13;
 
 struct TableSize {
   std::uint32_t width = 1, height = 1;

@@ -9,6 +9,11 @@
 
 namespace neritic::sonar {
 
+bool any_unclassed(std::span<const std::uint32_t> keys) {
+  // 65535 less the label lies in the low half of a key; 0: nothing was heard.
+  return std::ranges::any_of(keys, [](std::uint32_t key) { return (key & 0xffff) == 0xffff; });
+}
+
 std::vector<std::uint16_t> beam_labels(const Head& head, std::span<const std::uint32_t> keys) {
   const std::uint32_t columns = head.samples.bins.azimuth, beams = head.beams.bins.azimuth;
   std::vector<std::uint16_t> labels(std::size_t{head.beams.bins.range} * beams, 0);

@@ -63,6 +63,8 @@ void HeadGather::begin(graph::FrameGraph& graph, const View& view, const Table& 
   inputs.reflectivity = table.buffer;
   inputs.reflectivities = table.size;
   inputs.strengths = table.strengths;
+  inputs.larger = table.larger;
+  inputs.surface_m = surface_over_eye_m(ping.state);
   const auto target = [&](const gpu::Buffer& buffer, const char* name) {
     return buffer ? graph.import_buffer(ping.prefix + name, buffer) : graph::BufferHandle{};
   };
@@ -98,6 +100,8 @@ void HeadGather::add_ghost(graph::FrameGraph& graph, const View& view, const Tab
   inputs.reflectivity = table.buffer;
   inputs.reflectivities = table.size;
   inputs.strengths = table.strengths;
+  inputs.larger = table.larger;
+  inputs.surface_m = surface_over_eye_m(ping.state, &desc_.mirrors[i]);
   inputs.direct_depth = ping.inputs.depth;
   inputs.direct_labels = ping.inputs.labels;
   inputs.sums_so_far = ping.out.sums;
@@ -139,10 +143,18 @@ void HeadGather::end(graph::FrameGraph& graph, HeadPing& ping) const {
 
 SonarImage HeadGather::image(const HeadPing& ping) const {
   const auto keys = ping.host->keys.mapped<std::uint32_t>();
-  if (!receiver_) return gather_.to_image(ping.host->sums.mapped<std::uint32_t>(), keys);
+  if (!receiver_) {
+    SonarImage image = gather_.to_image(ping.host->sums.mapped<std::uint32_t>(), keys);
+    image.unclassed = any_unclassed(keys);
+    return image;
+  }
   const auto power = ping.host->power.mapped<float>();
   const Bins& bins = desc_.head.beams.bins;
-  return {bins.range, bins.azimuth, {power.begin(), power.end()}, beam_labels(desc_.head, keys)};
+  return {bins.range,
+          bins.azimuth,
+          {power.begin(), power.end()},
+          beam_labels(desc_.head, keys),
+          any_unclassed(keys)};
 }
 
 std::optional<LabelImage> HeadGather::label_energy(const HeadPing& ping) const {

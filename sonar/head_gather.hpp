@@ -67,6 +67,7 @@ class HeadGather {
     graph::BufferHandle buffer;
     std::uint32_t size = 0;
     std::span<const float> strengths = {};  // SonarGather::Inputs'
+    std::span<const shared::SonarDrawnLarger> larger = {};
   };
   // Adds the gather of the head's own view. ping: with prefix, host and state.
   void begin(graph::FrameGraph& graph, const View& view, const Table& table, HeadPing& ping);

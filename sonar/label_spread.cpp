@@ -1,6 +1,7 @@
 #include "sonar/label_spread.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/core/check.hpp"
@@ -100,16 +101,17 @@ class Spreader {
 
   // Along range, and the labels.
   void resolve() {
-    std::vector<float> most(s_.n_range), sum(s_.n_range), heard;
+    std::vector<float> most(s_.n_range), heard;
     std::vector<std::uint32_t> key(s_.n_range);
+    std::vector<float> energy(labels_.classes.size());
+    LabelImage found = labels_;
     for (std::uint32_t b = 0; b < s_.n_beams; ++b) {
       std::fill(most.begin(), most.end(), 0.0f);
-      std::fill(sum.begin(), sum.end(), 0.0f);
       for (const LabelTrace& t : beams_[b].all()) {
         const auto [from, upto] = spread_range(t, heard);
         for (std::uint32_t row = from; row < upto; ++row) {
           const float e = heard[row];
-          sum[row] += e;
+          energy[at(row, b)] += e;
           if (e > most[row] || (e == most[row] && e > 0.0f && t.key < key[row])) {
             most[row] = e;
             key[row] = t.key;
@@ -117,16 +119,58 @@ class Spreader {
         }
       }
       for (std::uint32_t row = 0; row < s_.n_range; ++row) {
-        if (!(sum[row] > 0.0f)) continue;
-        const std::size_t at = std::size_t{row} * s_.n_beams + b;
-        labels_.classes[at] = static_cast<std::uint16_t>(key[row] >> 16);
-        labels_.instances[at] = static_cast<std::uint16_t>(key[row]);
-        labels_.fraction[at] = std::min(1.0f, most[row] / sum[row]);
+        const std::size_t i = at(row, b);
+        if (!(energy[i] > 0.0f)) continue;
+        found.classes[i] = static_cast<std::uint16_t>(key[row] >> 16);
+        found.instances[i] = static_cast<std::uint16_t>(key[row]);
+        found.fraction[i] = std::min(1.0f, most[row] / energy[i]);
       }
     }
+    keep_shadows(energy, found);
+    labels_ = std::move(found);
   }
 
  private:
+  static constexpr std::size_t kBeside = 5;  // bins to a side that tell what is heard there
+
+  std::size_t at(std::uint32_t row, std::uint32_t beam) const {
+    return std::size_t{row} * s_.n_beams + beam;
+  }
+
+  // The middle of the first bins that are heard and in no shadow, from one bin on in steps; 0:
+  // none.
+  float beside(const std::vector<float>& energy, std::size_t from, std::size_t count,
+               std::ptrdiff_t step) const {
+    std::array<float, kBeside> some{};
+    std::size_t n = 0;
+    for (std::size_t k = 1; k <= count && n < kBeside; ++k) {
+      const std::size_t i = from + static_cast<std::size_t>(static_cast<std::ptrdiff_t>(k) * step);
+      if (energy[i] > 0.0f && labels_.classes[i] != kShadow) some[n++] = energy[i];
+    }
+    if (n == 0) return 0.0f;
+    std::sort(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(n));
+    return some[n / 2];
+  }
+
+  // labels_ tells the bins that are hidden, found what the spread fills.
+  void keep_shadows(const std::vector<float>& energy, LabelImage& found) const {
+    const auto along = static_cast<std::ptrdiff_t>(s_.n_beams);
+    for (std::uint32_t row = 0; row < s_.n_range; ++row)
+      for (std::uint32_t b = 0; b < s_.n_beams; ++b) {
+        const std::size_t i = at(row, b);
+        if (labels_.classes[i] != kShadow || !(energy[i] > 0.0f)) continue;
+        const float port = beside(energy, i, b, -1);
+        const float starboard = beside(energy, i, s_.n_beams - 1 - b, 1);
+        float around =
+            port > 0.0f && starboard > 0.0f ? std::min(port, starboard) : std::max(port, starboard);
+        if (around == 0.0f) around = beside(energy, i, s_.n_range - 1 - row, along);
+        if (energy[i] > kShadowPart * around) continue;
+        found.classes[i] = kShadow;
+        found.instances[i] = labels_.instances[i];
+        found.fraction[i] = labels_.fraction[i];
+      }
+  }
+
   static int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
   void add(LabelTraces& column, const EnergyRecord& r, std::uint32_t row, float counts) const {

@@ -32,10 +32,17 @@ struct LabelSpread {
 // object stays water or shadow.
 inline constexpr float kLeastPart = 1e-3f;
 
+// A hidden bin stays shadow while what spills into it is so much weaker, in power, than what its
+// surroundings hear: 10 dB, which shows as dark in a picture.
+inline constexpr float kShadowPart = 0.1f;
+
 // records: [rows][n_columns], of the direct rays and each mirror's. labels: what
 // label_by_energy made of the same rays; every bin that the spread fills is written anew: the
-// (class, instance) of most energy, ties to the smaller, and its part of all. Cost: a few
-// operations a bin that an instance fills, beam that hears it and tap.
+// (class, instance) of most energy, ties to the smaller, and its part of all. But a bin of shadow
+// stays one if it hears kShadowPart or less of its surroundings: the middle of the nearest bins to
+// either side at its range that are heard and in no shadow, the quieter side's; or, if there are
+// none at its range, of those behind it in its beam. Cost: a few operations a bin that an instance
+// fills, beam that hears it and tap.
 void spread_labels(std::span<const EnergyRecord> records, const LabelSpread& spread,
                    LabelImage& labels);
 

@@ -95,11 +95,6 @@ void add_motion(Ping& ping, const scene::Sonar& sonar, const Head& head, const P
                                                sonar.terms.range_spread->bandwidth_hz));
 }
 
-// Whether beams' weights hold the cosine of the elevation, which makes them solid angles.
-bool counts_solid_angle(const scene::Sonar& sonar) {
-  return sonar.terms.level || sonar.kind == scene::SonarKind::kEchoSounder;
-}
-
 // Where directions lie in the head's tables. axes: the head's, as columns, in those of the normals.
 void add_head(shared::SonarEcho& echo, const scene::Sonar& sonar, const Head& head,
               const Mat3& axes) {
@@ -130,10 +125,13 @@ void add_mirror(Ping& ping, const Mirror& mirror, const scene::Sonar& sonar, con
   echo.ghost_spreading = !level             ? shared::kSonarGhostPlain
                          : level->spreading ? shared::kSonarGhostSpreading
                                             : shared::kSonarGhostNoSpreading;
-  add_head(echo, sonar, head, glm::mat3_cast(state.world_from_sonar.rotation));
 }
 
 }  // namespace
+
+bool counts_solid_angle(const scene::Sonar& sonar) {
+  return sonar.terms.level || sonar.kind == scene::SonarKind::kEchoSounder;
+}
 
 std::vector<Mirror> mirrors_of(const scene::Sonar& sonar) {
   std::vector<Mirror> mirrors;
@@ -142,6 +140,14 @@ std::vector<Mirror> mirrors_of(const scene::Sonar& sonar) {
   if (ghosts.surface) mirrors.push_back({0.0, ghosts.surface_reflection, true});
   if (ghosts.bottom_m) mirrors.push_back({-*ghosts.bottom_m, ghosts.bottom_reflection, false});
   return mirrors;
+}
+
+double surface_over_eye_m(const PingState& state, const Mirror* mirror) {
+  constexpr double kEverything_m = 1e30;
+  if (!state.in_water) return kEverything_m;
+  const double sonar_m = state.world_from_sonar.position_m.y;
+  if (sonar_m > 0.0) return -kEverything_m;
+  return mirror ? -mirrored(*mirror, state.world_from_sonar).position_m.y : -sonar_m;
 }
 
 std::vector<float> ghost_weights(const scene::Sonar& sonar, const Head& head) {
@@ -195,6 +201,9 @@ Ping ping_of(const scene::Sonar& sonar, const Head& head, const PingState& state
           : glm::vec3(glm::conjugate(state.world_from_sonar.rotation) * Vec3(0, 1, 0));
   add_speckle(ping, sonar, head, eye_m, state.seed);
   add_motion(ping, sonar, head, state);
+  add_head(
+      ping.echo, sonar, head,
+      state.gbuffer_in_world_axes ? glm::mat3_cast(state.world_from_sonar.rotation) : Mat3(1.0));
   if (sonar.terms.profile) {
     // The longer of a ghost's legs may be beyond the range by as much as the other is within.
     const double range_max_m = head.samples.limits.range_max_m * (mirror ? 2.0 : 1.0);
@@ -209,10 +218,6 @@ Ping ping_of(const scene::Sonar& sonar, const Head& head, const PingState& state
     for (const float factor : table.factors)
       ping.correction.push_back(static_cast<float>(factor * ping.sound_speed_m_s));
     ping.correction.insert(ping.correction.end(), table.bends.begin(), table.bends.end());
-    if (sonar.terms.profile->bent)
-      add_head(ping.echo, sonar, head,
-               state.gbuffer_in_world_axes ? glm::mat3_cast(state.world_from_sonar.rotation)
-                                           : Mat3(1.0));
   }
   if (mirror) add_mirror(ping, *mirror, sonar, head, state, eye_m);
   return ping;

@@ -18,6 +18,7 @@ struct PingState {
   std::uint32_t stream = 0;           // which of the scene's sonars: its noise is its own
   std::uint32_t ping = 0;             // number of the ping
   double backscatter_scale = 1.0;     // what a strength of 1 in the reflectivity table stands for
+  bool in_water = false;              // whose still surface is y = 0: sound does not leave it
   bool gbuffer_in_world_axes = true;  // else in the sonar's (images without a scene)
   RangeCorrections* corrections = nullptr;  // the head's or its mirror's, where it keeps them
 };
@@ -36,9 +37,16 @@ Pose mirrored(const Mirror& mirror, const Pose& world_from_head);
 
 // A ghost's reciprocal paths, whose amplitudes add: the sound goes either way round.
 inline constexpr double kGhostPaths = 2.0;
+// Gather inputs' height of the water's surface over the sonar, or over its image in a mirror. A
+// sonar above the water hears nothing.
+double surface_over_eye_m(const PingState& state, const Mirror* mirror = nullptr);
+
 // Weights of a ghost's gather: what the pattern lets through one way, rows turned over as the
 // mirrored head's are. Empty where the head has none.
 std::vector<float> ghost_weights(const scene::Sonar& sonar, const Head& head);
+
+// Whether beams' weights hold the cosine of the elevation, which makes them solid angles.
+bool counts_solid_angle(const scene::Sonar& sonar);
 
 struct Ping {
   shared::SonarEcho echo{};

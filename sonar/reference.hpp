@@ -36,6 +36,7 @@ struct SonarImage {
   std::uint32_t n_range = 0, n_azimuth = 0;
   std::vector<float> intensity;       // [n_range][n_azimuth], row 0 nearest, column 0 full port
   std::vector<std::uint16_t> labels;  // same shape; class of the strongest contribution; 0: nothing
+  bool unclassed = false;             // something of no class, 0 in labels too, was heard
 };
 
 // max(0, -n . p / |p|) / |n|, or its absolute value where the sign is unknown (eq. 2). Nothing

@@ -158,6 +158,7 @@ DrawnLarger finished(const Growing& g, const Quat& world_from_eye) {
   out.drawn_from_true[3] = Vec4(up * rises_m - across * middle, 1.0);
   out.area = wide * high;
   out.azimuth_rad = p.azimuth_rad;
+  out.half_wide_rad = p.own_half_wide_rad;
   out.low_rad = p.own_low_rad;
   out.high_rad = p.own_high_rad;
   out.drawn_low_rad = p.low_rad;

@@ -26,6 +26,7 @@ struct DrawnLarger {
   double area = 1.0;                                 // of what is drawn over the thing's own
   Mat4 drawn_from_true{1.0};                         // of positions from the eye, in world axes
   double azimuth_rad = 0.0;                          // of its middle, in the eye's axes
+  double half_wide_rad = 0.0;                        // of its own width
   double low_rad = 0.0, high_rad = 0.0;              // elevations of its own ends
   double drawn_low_rad = 0.0, drawn_high_rad = 0.0;  // and of what is drawn
 };

@@ -51,7 +51,25 @@ struct SonarPush {
   uint end_row;
   uint first_v;  // published: of pixels, in this dispatch
   uint end_v;
+  uint drawn_larger;  // entries of the table of what is drawn larger
+  // The water's surface over the view's eye, along the y of G-buffer axes: nothing above it echoes.
+  float surface_m;
 };
+
+// Something that is drawn larger than it is (kSonarSpecLarger): the point that is drawn in the
+// direction d, at its true range r, lies at s * true_from_drawn * d + offset_m, with the s that
+// makes it r far. About the view's eye, in G-buffer axes. By ascending labels.
+struct SonarDrawnLarger {
+  mat3 true_from_drawn;
+  vec3 offset_m;
+  // Ghosts: the thing's own azimuth, half its width, its lowest and highest elevation, seen from
+  // the sonar.
+  vec4 direct_rad;
+  uint label;
+  uint views;  // kSonarLargerHere, kSonarLargerDirect or both
+};
+NERITIC_CONST uint kSonarLargerHere = 1u;    // drawn larger in the view that is gathered
+NERITIC_CONST uint kSonarLargerDirect = 2u;  // ghosts: in the sonar's own view
 
 NERITIC_CONST uint kSonarBindColumns = 0;
 NERITIC_CONST uint kSonarBindRows = 1;
@@ -65,6 +83,7 @@ NERITIC_CONST uint kSonarBindScratch = 8;     // of one gather, cleared before: 
 NERITIC_CONST uint kSonarBindSumTexels = 16;  // the same three as texels, with kSonarSpecTexels
 NERITIC_CONST uint kSonarBindKeyTexels = 17;
 NERITIC_CONST uint kSonarBindScratchTexels = 18;
+NERITIC_CONST uint kSonarBindLarger = 19;
 
 // Specialisation constants.
 NERITIC_CONST uint kSonarSpecColumns = 0;  // columns a workgroup (its x size)

@@ -22,6 +22,8 @@ struct BeamHit {
   vec2 ends_m;     // nearest and farthest range of the row's height (kFootprint)
   vec2 ends_tan;   // tangents of the elevations there
   bool doubtful;   // the plane may be a limb's: hit_of asks again
+  bool larger;     // what is hit is drawn larger than it is
+  vec3 towards;    // then: the direction of the place itself
 };
 
 // A footprint reaches this much farther to one side of the row's centre than to the other, at most:
@@ -226,10 +228,12 @@ vec2 ranges_beside(SonarColumn s, uint row, Look before, Look look, Look after) 
   return vec2(below ? before.centre_m : 0.0, above ? after.centre_m : 0.0);
 }
 
+BeamHit no_hit() { return BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0), false, false, vec3(0.0)); }
+
 // neighbours_m: neighbour_ranges, where footprints are bounded. again: where it is doubtful the neighbouring pixel is
 // asked.
 BeamHit hit_of(SonarColumn s, Look look, vec2 neighbours_m, bool again) {
-  BeamHit hit = BeamHit(ivec3(0), 0.0, 0.0, vec2(0.0), vec2(0.0), false);
+  BeamHit hit = no_hit();
   s.pixel = look.pixel;
   s.pixel_tan = look.pixel_tan;
   vec4 e = look.row;
@@ -278,7 +282,16 @@ BeamHit hit_of(SonarColumn s, Look look, vec2 neighbours_m, bool again) {
   if (kFootprint == kSonarFootprintBounded)
     find_ends(s, neighbours_m, e.zw, most_m == 0.0, plane,
               ahead + s.tan_theta * sideways + e.zw * s.sec_theta * along_up, along_pixel, hit);
-  if (larger) hit.ends_m = vec2(hit.range_m);
+  if (larger) {
+    hit.larger = true;
+    hit.towards = true_direction(hit.at, (s.forward + s.pixel_tan * s.right + ty * s.up) / length_of, hit.range_m);
+    hit.strength = min(facing(-dot(n, hit.towards)), 1.0);
+    hit.ends_m = vec2(hit.range_m);
+  }
+  // Sound does not leave the water.
+  float above_m = hit.larger ? hit.towards.y * hit.range_m
+                             : plane * (s.forward.y + s.pixel_tan * s.right.y + ty * s.up.y);
+  if (above_m > c.surface_m) return no_hit();
   return hit;
 }
 

@@ -21,6 +21,7 @@ layout(set = 0, binding = kSonarBindDepth) uniform texture2DArray depth_image;
 layout(set = 0, binding = kSonarBindNormal) uniform texture2DArray normal_image;
 layout(set = 0, binding = kSonarBindLabel) uniform utexture2DArray label_image;
 layout(set = 0, binding = kSonarBindReflectivity, scalar) readonly buffer Reflectivity { float reflectivity[]; };
+layout(set = 0, binding = kSonarBindLarger, scalar) readonly buffer Larger { SonarDrawnLarger drawn_larger[]; };
 layout(push_constant, scalar) uniform Push { SonarPush pushed; };
 // main copies it at its start: within loops a processor's driver would load it anew each time, lane by lane.
 SonarPush c;
@@ -62,6 +63,27 @@ bool is_larger(ivec3 at) {
   if (kLarger == 0) return false;
   uint instance = texelFetch(label_image, at, 0).y;
   return instance < c.reflectivities && reflectivity[instance] < 0.0;
+}
+
+// The entry of an instance in the table of what is drawn larger; as many as there are: it has none.
+uint larger_of(uint instance) {
+  uint low = 0, high = c.drawn_larger;
+  while (low < high) {
+    uint middle = (low + high) / 2;
+    if (drawn_larger[middle].label < instance) low = middle + 1;
+    else high = middle;
+  }
+  return low < c.drawn_larger && drawn_larger[low].label == instance ? low : c.drawn_larger;
+}
+
+// The direction of the place that a pixel shows at a range, of something drawn larger than it is.
+vec3 true_direction(ivec3 at, vec3 drawn, float range_m) {
+  uint entry = larger_of(texelFetch(label_image, at, 0).y);
+  if (entry == c.drawn_larger || !(range_m > 0.0)) return drawn;
+  vec3 along = drawn_larger[entry].true_from_drawn * drawn, offset_m = drawn_larger[entry].offset_m;
+  float square = dot(along, along), half_linear = dot(along, offset_m);
+  float root = half_linear * half_linear - square * (dot(offset_m, offset_m) - range_m * range_m);
+  return normalize((sqrt(max(root, 0.0)) - half_linear) / square * along + offset_m);
 }
 
 // The incidence term times the reflectivity of the pixel's instance; gives the label too.

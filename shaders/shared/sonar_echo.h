@@ -33,14 +33,14 @@ struct SonarEcho {
   // Ghosts: what the direct leg's spreading makes of the gain, which counts the mean leg's:
   // kSonarGhost.
   uint ghost_spreading;
-  vec3 head_right;  // ghosts, bent rays: the head's axes, for a leg's place in its pattern
+  vec3 head_right;  // the head's axes, for a direction's place in its pattern
   float elevation_min_rad;
   vec3 head_up;
   float rows_per_rad;
   vec3 head_back;
   float azimuth_min_rad;
   float columns_per_rad;
-  uint solid_angle;       // ghosts, bent rays: a beam's cosine of elevation counts
+  uint solid_angle;       // a beam's weight holds the cosine of its elevation
   float cells_per_range;  // scatterers: the least width of a cell a metre of range, in finest cells
   float least_cells;      // and at any range
   float column_rad;

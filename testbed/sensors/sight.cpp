@@ -23,8 +23,8 @@ struct Span {
 
 // The pixels that see something, by its owner and by range.
 struct Seen {
-  Span own, nearer, within, farther;  // others' by the limits
-  std::size_t pixels = 0;             // within the aperture
+  Span own, above, nearer, within, farther;  // others': out of the water, or by the limits
+  std::size_t pixels = 0;                    // within the aperture
 };
 
 int root_of(const scene::Scene& scene, int object) {
@@ -62,7 +62,7 @@ void each_pixel(const ViewImages& view, See see) {
 
 // Counts the surfaces that a sonar's beams meet.
 void look(const scene::Sonar& sonar, const SonarFrame& head, const std::vector<bool>& own,
-          Seen& seen) {
+          bool in_water, Seen& seen) {
   const sonar::Limits& l = head.grid.limits;
   for (const ViewImages& sector : head.sectors) {
     const Quat head_from_view =
@@ -76,7 +76,9 @@ void look(const scene::Sonar& sonar, const SonarFrame& head, const std::vector<b
         return;
       ++seen.pixels;
       if (!hit) return;
-      Span& of = own[instance]                 ? seen.own
+      const double y_m = (head.world_from_head.rotation * p).y + head.world_from_head.position_m.y;
+      Span& of = in_water && y_m > 0.0         ? seen.above
+                 : own[instance]               ? seen.own
                  : range_m < sonar.range_min_m ? seen.nearer
                  : range_m < sonar.range_max_m ? seen.within
                                                : seen.farther;
@@ -138,15 +140,23 @@ std::optional<std::string> blindness(const scene::Scene& scene, const scene::Cam
 }
 
 std::optional<std::string> blindness(const scene::Scene& scene, const scene::Sonar& sonar,
-                                     std::span<const SonarFrame> heads) {
+                                     std::span<const SonarFrame> heads, bool hears) {
   const std::vector<bool> own = own_instances(scene, sonar.mount.object);
   Seen seen;
-  for (const SonarFrame& head : heads) look(sonar, head, own, seen);
-  if (seen.within.pixels > 0) return {};
   const std::string name = "sonar " + sonar.name;
+  const bool in_water = scene.water.has_value();
+  if (const double y_m = heads.empty() ? 0.0 : heads.front().world_from_sonar.position_m.y;
+      in_water && y_m > 0.0)
+    return fmt::format(
+        "{}: no return, since it is out of the water, at y = {:.4g} m: the surface is "
+        "y = 0; lower it",
+        name, y_m);
+  for (const SonarFrame& head : heads) look(sonar, head, own, in_water, seen);
+  if (seen.within.pixels > 0) return {};
   const bool others = seen.nearer.pixels > 0 || seen.farther.pixels > 0;
   if (seen.own.pixels > 0 && (!others || 2 * seen.own.pixels > seen.pixels))
     return behind_carrier(scene, name, sonar.mount, seen.own);
+  if (hears) return {};  // what is too small for these pixels, or has no class
   const std::string limits =
       fmt::format("range_m = [{:g}, {:g}]", sonar.range_min_m, sonar.range_max_m);
   if (seen.farther.pixels > 0)
@@ -156,6 +166,10 @@ std::optional<std::string> blindness(const scene::Scene& scene, const scene::Son
     return fmt::format(
         "{}: no return, since all in its beams is nearer than {}: {:.2g} to {:.2g} m", name, limits,
         seen.nearer.min_m, seen.nearer.max_m);
+  if (seen.above.pixels > 0)
+    return fmt::format(
+        "{}: no return, since all in its beams is out of the water, above y = 0: turn or move it",
+        name);
   return fmt::format("{}: no return, since nothing is in its beams: turn or move it", name);
 }
 

@@ -15,8 +15,9 @@ namespace neritic::testbed {
 // frame: with depth and instances.
 std::optional<std::string> blindness(const scene::Scene& scene, const scene::Camera& camera,
                                      const CameraFrame& frame);
-// heads: of one ping, with depth and instances of their sectors.
+// heads: of one ping, with depth and instances of their sectors, which may miss what is smaller
+// than their pixels. hears: whether the ping heard something of no class.
 std::optional<std::string> blindness(const scene::Scene& scene, const scene::Sonar& sonar,
-                                     std::span<const SonarFrame> heads);
+                                     std::span<const SonarFrame> heads, bool hears = false);
 
 }  // namespace neritic::testbed

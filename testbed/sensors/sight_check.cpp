@@ -22,10 +22,12 @@ const SonarFrame* first_head(const FrameResult& frame, const std::string& sonar)
 SightCheck::SightCheck(Session& session, const scene::SimulatedMotion* simulated, Tell tell)
     : session_(session), simulated_(simulated), tell_(std::move(tell)) {}
 
-// Whether anything but what has the carrier's class is the strongest in any bin.
+// Whether anything but what has the carrier's class is the strongest in any bin. Without a carrier
+// any echo is something else's.
 bool SightCheck::hears(const scene::Sonar& sonar, const SonarFrame& head) const {
   const int carrier = sonar.mount.object;
   const std::uint16_t own = carrier < 0 ? 0 : session_.scene().objects[carrier].class_id;
+  if (head.image.unclassed && (carrier < 0 || own != 0)) return true;
   return std::ranges::any_of(head.image.labels,
                              [own](std::uint16_t label) { return label != 0 && label != own; });
 }
@@ -50,6 +52,10 @@ Status SightCheck::accept(const FrameResult& frame) {
           return h.name == sonar.name && hears(sonar, h);
         }))
       continue;
+    if (std::ranges::any_of(frame.sonars, [&](const SonarFrame& h) {
+          return h.name == sonar.name && h.image.unclassed;
+        }))
+      unclassed_.insert(sonar.name);
     sonars.push_back(i);
   }
   return look(frame.time_s, cameras, sonars);
@@ -80,7 +86,8 @@ void SightCheck::judge(const FrameResult& frame) {
     for (const SonarFrame& head : frame.sonars)
       if (head.name == sonar.name) heads.push_back(head);
     if (heads.empty()) continue;
-    if (const auto line = blindness(scene, sonar, heads)) tell_(*line);
+    if (const auto line = blindness(scene, sonar, heads, unclassed_.contains(sonar.name)))
+      tell_(*line);
   }
 }
 

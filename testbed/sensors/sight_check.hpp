@@ -30,7 +30,8 @@ class SightCheck final : public FrameSink {
   Session& session_;
   const scene::SimulatedMotion* simulated_;
   Tell tell_;
-  std::set<std::string> seen_;  // sensors whose first frame is past
+  std::set<std::string> seen_;       // sensors whose first frame is past
+  std::set<std::string> unclassed_;  // sonars that heard something of no class
 };
 
 }  // namespace neritic::testbed

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "engine/scene/animation.hpp"
 
@@ -13,26 +14,13 @@ namespace {
 constexpr double kCells = 120.0, kMostColumns = 4.0, kPartOfBeam = 0.35;
 constexpr double kPartOfAperture = 0.25;
 
-// The weight over the elevations of an ellipse from low to high.
-double mean_weight(const sonar::BeamGrid& grid, std::span<const float> weights, double azimuth_rad,
-                   double low_rad, double high_rad) {
+// How many cells a solid angle is, on average over an ellipse from low to high: 1 / cos.
+double mean_secant(double low_rad, double high_rad) {
   constexpr int kPlaces = 15;
-  const auto column = static_cast<std::uint32_t>(
-      std::clamp((azimuth_rad - grid.limits.azimuth_min_rad) / grid.azimuth_step_rad(), 0.0,
-                 grid.bins.azimuth - 1.0));
   double sum = 0.0, all = 0.0;
   for (int i = 0; i < kPlaces; ++i) {
     const double x = (i + 0.5) / kPlaces, chord = std::sqrt(x * (1.0 - x));
-    const double row = (low_rad + x * (high_rad - low_rad) - grid.limits.elevation_min_rad) /
-                           grid.elevation_step_rad() -
-                       0.5;
-    const double at = std::clamp(row, 0.0, grid.bins.elevation - 1.0);
-    const auto lower = static_cast<std::size_t>(at);
-    const std::size_t upper = std::min<std::size_t>(lower + 1, grid.bins.elevation - 1);
-    const double part = at - static_cast<double>(lower);
-    const double weight = (1.0 - part) * weights[lower * grid.bins.azimuth + column] +
-                          part * weights[upper * grid.bins.azimuth + column];
-    sum += chord * weight;
+    sum += chord / std::max(std::cos(low_rad + x * (high_rad - low_rad)), 1e-3);
     all += chord;
   }
   return sum / all;
@@ -88,23 +76,41 @@ double least_object_m(const scene::Scene& scene) {
 
 std::vector<float> sample_strengths(std::vector<float> strengths,
                                     const std::vector<render::DrawnLarger>& larger,
-                                    const sonar::BeamGrid& samples,
-                                    std::span<const float> weights) {
+                                    bool solid_angle) {
   for (const render::DrawnLarger& target : larger) {
     if (strengths.size() <= target.label) strengths.resize(target.label + std::size_t{1}, 1.0f);
     double scale = 1.0 / target.area;
-    if (!weights.empty()) {
-      const double own =
-          mean_weight(samples, weights, target.azimuth_rad, target.low_rad, target.high_rad);
-      const double drawn = mean_weight(samples, weights, target.azimuth_rad, target.drawn_low_rad,
-                                       target.drawn_high_rad);
-      // In a pattern's null nothing is worth a correction.
-      if (own > 0.0 && drawn > 0.0) scale *= std::clamp(own / drawn, 0.1, 10.0);
-    }
+    if (!solid_angle)
+      scale *= mean_secant(target.low_rad, target.high_rad) /
+               mean_secant(target.drawn_low_rad, target.drawn_high_rad);
     float& strength = strengths[target.label];
     strength = -std::abs(static_cast<float>(strength * scale));
   }
   return strengths;
+}
+
+std::vector<shared::SonarDrawnLarger> places_of(const std::vector<render::DrawnLarger>& here,
+                                                const std::vector<render::DrawnLarger>& direct) {
+  std::map<std::uint16_t, shared::SonarDrawnLarger> places;
+  for (const render::DrawnLarger& target : direct) {
+    shared::SonarDrawnLarger& place = places[target.label];
+    place.direct_rad =
+        glm::vec4(target.azimuth_rad, target.half_wide_rad, target.low_rad, target.high_rad);
+    place.views |= shared::kSonarLargerDirect;
+  }
+  for (const render::DrawnLarger& target : here) {
+    shared::SonarDrawnLarger& place = places[target.label];
+    const Mat4 true_from_drawn = glm::inverse(target.drawn_from_true);
+    place.true_from_drawn = glm::mat3(glm::dmat3(true_from_drawn));
+    place.offset_m = glm::vec3(true_from_drawn[3]);
+    place.views |= shared::kSonarLargerHere;
+  }
+  std::vector<shared::SonarDrawnLarger> out;
+  for (auto& [label, place] : places) {
+    place.label = label;
+    out.push_back(place);
+  }
+  return out;
 }
 
 }  // namespace neritic::testbed

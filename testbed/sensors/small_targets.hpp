@@ -3,10 +3,10 @@
 // thread.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "engine/render/draw_list.hpp"
+#include "shared/sonar.h"
 #include "sonar/head.hpp"
 
 namespace neritic::testbed {
@@ -20,11 +20,17 @@ render::LeastDrawn least_drawn(const sonar::Head& head, const scene::Sonar& sona
 // The least of the largest extents of objects and copies, m; 0: there is no such object.
 double least_object_m(const scene::Scene& scene);
 
-// Strengths by instance label (empty: all are 1) with those of what is drawn larger: negative, less
-// by as much as it is larger, and weighted as where it is, not as where it is drawn. weights: of
-// the head's samples, [n_elevation][n_azimuth]; empty: all are 1.
+// Strengths by instance label (empty: all are 1) with those of what is drawn larger: negative, and
+// less by as much as it is larger. solid_angle: sonar::counts_solid_angle; else cells count alike,
+// and a thing has fewer of them where it is drawn nearer to the level.
 std::vector<float> sample_strengths(std::vector<float> strengths,
                                     const std::vector<render::DrawnLarger>& larger,
-                                    const sonar::BeamGrid& samples, std::span<const float> weights);
+                                    bool solid_angle);
+
+// Where the things are that a view draws larger, by ascending labels. direct: of a ghost's view,
+// what the sonar's own view draws larger.
+std::vector<shared::SonarDrawnLarger> places_of(
+    const std::vector<render::DrawnLarger>& here,
+    const std::vector<render::DrawnLarger>& direct = {});
 
 }  // namespace neritic::testbed

@@ -68,11 +68,16 @@ std::optional<render::LeastDrawn> seen_from(const HeadState& state, const Pose& 
   return least;
 }
 
-// Empty where nothing is drawn larger in this ping: the scene's own table counts.
-std::vector<float> strengths_of(const std::vector<float>& table, const render::DrawList& draws,
-                                const HeadState& state, std::span<const float> weights) {
-  if (draws.larger.empty()) return {};
-  return sample_strengths(table, draws.larger, state.head().samples, weights);
+// Empty where nothing is drawn larger in this ping: the scene's own table counts. direct: of a
+// ghost's ping, the draws of the sonar's own view.
+HeadWork::Larger larger_of(const std::vector<float>& table, const scene::Sonar& sonar,
+                           const render::DrawList& draws,
+                           const render::DrawList* direct = nullptr) {
+  HeadWork::Larger out;
+  if (!draws.larger.empty())
+    out.strengths = sample_strengths(table, draws.larger, sonar::counts_solid_angle(sonar));
+  out.places = direct ? places_of(draws.larger, direct->larger) : places_of(draws.larger);
+  return out;
 }
 
 }  // namespace
@@ -194,6 +199,7 @@ Result<std::unique_ptr<SonarWork>> SonarSensor::declare(const FrameParts& frame,
     at.stream = static_cast<std::uint32_t>(index_ * 2 + place);
     at.ping = ping;
     at.backscatter_scale = tables_.backscatter_scale;
+    at.in_water = frame.scene.water.has_value();
     NERITIC_TRY_STATUS(declare_head(frame, capture, state, head));
   }
   return work;
@@ -213,8 +219,9 @@ Status SonarSensor::declare_head(const FrameParts& frame, const Capture& capture
     NERITIC_TRY(arrays, declare_echoes(frame, capture, sonar, work));
   }
   if (!arrays_wanted) return {};
-  // Readers of the arrays expect a plain pinhole.
-  if (!capture.echoes || state.sampled.lean != 0.0) {
+  // Readers of the arrays expect a plain pinhole,
+  // and things of their own size.
+  if (!capture.echoes || state.sampled.lean != 0.0 || !work.sampled.draws.larger.empty()) {
     NERITIC_TRY(arrays, declare_geometry(frame, ping.prefix + "arrays ", kFrontFaces, work.arrays,
                                          parts_of(capture)));
   }
@@ -242,12 +249,10 @@ Result<render::GBuffer> SonarSensor::declare_echoes(const FrameParts& frame, con
         frame.graph.import_buffer(
             ping.prefix + (sonar.made_from.terms.level ? "backscatter" : "reflectivity"), *buffer),
         static_cast<std::uint32_t>(buffer->size() / sizeof(float))};
-  std::span<const float> weights;
-  if (const auto& echo = state.head().echo) weights = echo->weights;
-  work.strengths =
-      strengths_of(tables_.values_of(sonar.made_from), work.sampled.draws, state, weights);
+  work.larger = larger_of(tables_.values_of(sonar.made_from), sonar.made_from, work.sampled.draws);
   sonar::HeadGather::Table own = table;
-  own.strengths = work.strengths;
+  own.strengths = work.larger.strengths;
+  own.larger = work.larger.places;
   state.gather->begin(frame.graph, view_of(g, work.world_from_head), own, ping);
   NERITIC_TRY_STATUS(declare_ghosts(frame, sonar, table, work));
   state.gather->end(frame.graph, ping);
@@ -258,7 +263,7 @@ Result<render::GBuffer> SonarSensor::declare_echoes(const FrameParts& frame, con
 Status SonarSensor::declare_ghosts(const FrameParts& frame, const SonarState& sonar,
                                    const sonar::HeadGather::Table& table, HeadWork& work) const {
   const HeadState& state = *work.state;
-  work.ghost_strengths.reserve(sonar.mirrors.size());
+  work.ghosts_larger.reserve(sonar.mirrors.size());
   for (const sonar::Mirror& mirror : sonar.mirrors) {
     work.ghosts.push_back(std::make_unique<ViewsWork>());
     ViewsWork& ghost = *work.ghosts.back();
@@ -275,10 +280,11 @@ Status SonarSensor::declare_ghosts(const FrameParts& frame, const SonarState& so
     const std::string prefix =
         work.ping.prefix + (mirror.water_below ? "surface ghosts " : "bottom ghosts ");
     NERITIC_TRY(const render::GBuffer g, declare_geometry(frame, prefix, options, ghost));
-    work.ghost_strengths.push_back(
-        strengths_of(tables_.values_of(sonar.made_from), ghost.draws, state, {}));
+    work.ghosts_larger.push_back(larger_of(tables_.values_of(sonar.made_from), sonar.made_from,
+                                           ghost.draws, &work.sampled.draws));
     sonar::HeadGather::Table own = table;
-    own.strengths = work.ghost_strengths.back();
+    own.strengths = work.ghosts_larger.back().strengths;
+    own.larger = work.ghosts_larger.back().places;
     state.gather->add_ghost(frame.graph, view_of(g, pose), own, prefix, work.ping);
   }
   return {};

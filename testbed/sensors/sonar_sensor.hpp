@@ -56,9 +56,14 @@ struct HeadWork {
   Pin<sonar::HeadBuffers> buffers;  // empty: nothing is brought to the host
   sonar::HeadPing ping;
   ViewsWork sampled, arrays;
-  std::vector<float> strengths;  // of this ping, where something is drawn larger than it is
-  std::vector<std::vector<float>> ghost_strengths;  // a mirror
-  std::vector<std::unique_ptr<ViewsWork>> ghosts;   // a mirror
+  // What a gather of this ping draws larger than it is: strengths with its own, and its places.
+  struct Larger {
+    std::vector<float> strengths;
+    std::vector<shared::SonarDrawnLarger> places;
+  };
+  Larger larger;
+  std::vector<Larger> ghosts_larger;               // a mirror
+  std::vector<std::unique_ptr<ViewsWork>> ghosts;  // a mirror
   double heading_rad = 0.0;
   Pose world_from_sonar, world_from_head;
 };

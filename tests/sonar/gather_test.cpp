@@ -300,8 +300,17 @@ TEST_F(SonarGpu, AnImageThatNoBufferHoldsIsRefusedWithWhatFits) {
       sonar::SonarGather::create(device(), grid, sonar::plan_sectors(grid), {}, options);
   if (made.ok()) GTEST_SKIP() << "this device holds it";
   EXPECT_EQ(made.error().code, ErrorCode::kUnsupported);
-  EXPECT_NE(made.error().message.find(" range bins (with a quality"), std::string::npos)
-      << made.error().message;
+  // The range that the line names fits.
+  const std::string& message = made.error().message;
+  double farthest_m = 0.0;
+  const std::size_t at = message.find("range_m = [1, ");
+  ASSERT_NE(at, std::string::npos) << message;
+  ASSERT_EQ(std::sscanf(message.c_str() + at, "range_m = [1, %lf]", &farthest_m), 1) << message;
+  sonar::BeamGrid shorter = grid;
+  shorter.bins.range = static_cast<std::uint32_t>(grid.bins.range * (farthest_m - 1.0) / 4.0);
+  EXPECT_LE(std::uint64_t{shorter.bins.range} * grid.bins.azimuth * 2 * sizeof(std::uint32_t),
+            device().limits().maxStorageBufferRange);
+  EXPECT_GT(farthest_m, 1.0);
 }
 
 TEST_F(SonarGpu, RecordsThatNoDeviceHoldsAreRefusedByName) {
@@ -314,6 +323,8 @@ TEST_F(SonarGpu, RecordsThatNoDeviceHoldsAreRefusedByName) {
   ASSERT_FALSE(made.ok());
   EXPECT_EQ(made.error().code, ErrorCode::kUnsupported);
   EXPECT_NE(made.error().message.find("labels.energy"), std::string::npos);
+  for (const char* key : {"elevation_deg", "azimuth_deg", "quality"})
+    EXPECT_NE(made.error().message.find(key), std::string::npos) << made.error().message;
 }
 
 }  // namespace

@@ -162,5 +162,39 @@ TEST(LabelSpread, LeavesWhatIsFarBelowThePeak) {
   EXPECT_EQ(labels.fraction[3], 1.0f);
 }
 
+// A floor that every column hears but six in the middle, which a thing hides at the rows 4 to 9.
+// The neighbours' side lobes, 20 dB below, spill into all of them.
+LabelImage behind_a_thing(float side_lobes, bool floor_beside) {
+  LabelSpread s{.n_range = 12, .n_beams = 20, .n_columns = 20};
+  s.across = {-7, std::vector<float>(15, side_lobes), 1};
+  s.across.weights[7] = 1.0f;
+  std::vector<EnergyRecord> records;
+  LabelImage labels = silent(s);
+  for (std::uint16_t row = 0; row < s.n_range; ++row)
+    for (std::uint32_t column = 0; column < s.n_columns; ++column) {
+      const bool hidden = row >= 4 && row < 10 && column >= 7 && column < 13;
+      const bool heard = !hidden && (floor_beside || column == 2);
+      records.push_back(heard ? EnergyRecord{row, 1000, 1, 1, row, row}
+                              : EnergyRecord{sonar::kNoReturn, 0, 0, 0, 0, 0});
+      if (hidden) labels.classes[row * s.n_beams + column] = sonar::kShadow;
+      if (hidden) labels.fraction[row * s.n_beams + column] = 1.0f;
+    }
+  sonar::spread_labels(records, s, labels);
+  return labels;
+}
+
+TEST(LabelSpread, AShadowIntoWhichNeighboursSpillStaysOne) {
+  // Up to 14 columns spill: 13 dB below the floor, and 3 dB below it.
+  const LabelImage dark = behind_a_thing(0.004f, true), lit = behind_a_thing(0.05f, true);
+  for (std::uint32_t row = 0; row < dark.n_range; ++row)
+    for (std::uint32_t beam = 0; beam < dark.n_beams; ++beam) {
+      const bool hidden = row >= 4 && row < 10 && beam >= 7 && beam < 13;
+      const std::size_t i = row * dark.n_beams + beam;
+      EXPECT_EQ(dark.classes[i], hidden ? sonar::kShadow : 1) << row << ' ' << beam;
+      EXPECT_EQ(dark.instances[i], hidden ? 0 : 1) << row << ' ' << beam;
+      EXPECT_EQ(lit.classes[i], 1) << row << ' ' << beam;
+    }
+}
+
 }  // namespace
 }  // namespace neritic

@@ -124,6 +124,44 @@ TEST_F(Sight, EmptyWaterIsToldAlsoBesideNoise) {
       << lines[0];
 }
 
+// The ping draws a ball of one centimetre larger than its own pixels show it.
+TEST_F(Sight, ASonarThatHearsASmallTargetWithoutAClassSaysNothing) {
+  scene::Scene scene;
+  scene.objects.push_back(object_of(scene, scene::make_sphere(0.005, 16), {0.01, 0.02, -4.0}));
+  scene.objects[0].class_id = 0;
+  scene.sonars = {short_sonar(SonarKind::kImaging)};
+  EXPECT_GT(total(ping(device(), scene)), 0.0);
+  EXPECT_THAT(told(device(), scene, echoes_and_color(), 1), ::testing::IsEmpty());
+}
+
+TEST_F(Sight, WhatIsOutOfTheWaterIsNotHeardAndTold) {
+  scene::Scene scene;
+  scene.objects.push_back(object_of(scene, scene::make_sphere(0.5, 32), {0.0, 1.0, -3.0}));
+  scene.sonars = {short_sonar(SonarKind::kImaging)};
+  scene.sonars[0].mount.pose = {{0.0, -1.0, 0.0},
+                                glm::angleAxis(std::atan2(2.0, 3.0), Vec3(1, 0, 0))};
+  EXPECT_GT(total(ping(device(), scene)), 0.0);  // a space without water is all water
+  scene.water = scene::Water{};
+  for (const char* gather : {"plane", "nearest", "published"}) {
+    scene.sonars[0].gather = gather;
+    EXPECT_EQ(total(ping(device(), scene)), 0.0) << gather;
+  }
+  auto lines = told(device(), scene, echoes_and_color(), 1);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_NE(lines[0].find("all in its beams is out of the water, above y = 0"), std::string::npos)
+      << lines[0];
+  // The part of the ball that is below the surface is heard.
+  scene.objects[0].mount.pose.position_m.y = -0.1;
+  EXPECT_GT(total(ping(device(), scene)), 0.0);
+  // A sonar in the air hears neither what is beside it nor what is in the water.
+  scene.sonars[0].mount.pose = {{0.0, 1.5, 0.0},
+                                glm::angleAxis(-std::atan2(1.6, 3.0), Vec3(1, 0, 0))};
+  EXPECT_EQ(total(ping(device(), scene)), 0.0);
+  lines = told(device(), scene, echoes_and_color(), 1);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_NE(lines[0].find("out of the water, at y = 1.5 m"), std::string::npos) << lines[0];
+}
+
 TEST_F(Sight, ACameraBeforeWhichNothingIsSaysThatItIsBlack) {
   scene::Scene scene = wall(3.0, short_sonar(SonarKind::kImaging));
   scene.sonars.clear();

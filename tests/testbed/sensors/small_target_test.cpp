@@ -6,6 +6,7 @@
 
 #include "engine/core/files.hpp"
 #include "sonar/head_pattern.hpp"
+#include "sonar/sound_speed_profile.hpp"
 #include "testbed/sensors/small_targets.hpp"
 #include "tests/testbed/sensors/sonar_pings.hpp"
 
@@ -201,6 +202,35 @@ TEST_F(SmallTargetsOnABottom, ABallThatLiesOnTheBottomIsAsLoudAsOneInOpenWater) 
   scene.objects.back().backscatter_db = -150.0;
   const double lying = over_closed_form(ping(device(), scene), sonar, places).front();
   EXPECT_NEAR(10.0 * std::log10(lying / open), 0.0, 0.7);
+}
+
+// It is drawn over fifteen degrees, and heard by the water on the way to where it is.
+TEST_F(SmallTargetsOfAKind, ABallIsHeardByTheSpeedOfTheWaterOnTheWayToIt) {
+  constexpr double kBall_m = 0.25, kShallow_m = 5.0;
+  const Vec3 at(0.0, -20.0, -100.0);
+  const double centre_m = glm::length(at), down_rad = std::asin(at.y / centre_m);
+  scene::Sonar sonar = sonar_of(97.0, 107.0, 2000);
+  sonar.azimuth_rad = sonar.elevation_rad = radians(60.0);
+  sonar.bins_azimuth = 61;
+  sonar.bins_elevation = 300;
+  sonar.mount.pose.position_m = {0.0, -kShallow_m, 0.0};
+  sonar.terms.water.sound_speed_m_s = 1525.0;
+  sonar.terms.level = plain_level();
+  const scene::SonarTable speeds{{0.0, 1525.0}, {14.0, 1525.0}, {16.0, 1490.0}, {100.0, 1490.0}};
+  const auto profile = sonar::SoundSpeedProfile::of_table(
+      {{0.0, 1525.0}, {14.0, 1525.0}, {16.0, 1490.0}, {100.0, 1490.0}});
+  ASSERT_TRUE(profile.ok());
+  scene::Scene scene;
+  scene.objects = {
+      object_of(scene, scene::make_sphere(kBall_m, 64), at - Vec3(0.0, kShallow_m, 0.0))};
+  for (const bool bent : {false, true}) {
+    sonar.terms.profile = scene::SonarProfile{speeds, bent};
+    scene.sonars = {sonar};
+    // Lambert's sphere echoes from three quarters of its radius before its centre, on average.
+    const double heard_m =
+        1525.0 * profile->straight_time_s(kShallow_m, down_rad, centre_m - 0.75 * kBall_m);
+    EXPECT_NEAR(mean_range_m(ping(device(), scene)), heard_m, bent ? 0.12 : 0.03) << bent;
+  }
 }
 
 TEST(SmallTargetPlaces, NeighboursGrowNoFartherThanToEachOther) {

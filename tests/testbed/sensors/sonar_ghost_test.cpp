@@ -106,6 +106,51 @@ TEST_F(SonarGhost, EachLegIsHeardByTheSpeedOfItsOwnWater) {
   }
 }
 
+// A ball of a tenth of a metre in cells that are larger: it is drawn larger than it is, and heard
+// where it is, on either leg.
+TEST_F(SonarGhost, ATargetSmallerThanACellHasItsGhostAtItsPlaceAndLevel) {
+  constexpr double kDeep_m = 8.0, kAhead_m = 10.0, kSmall_m = 0.1;
+  scene::Sonar sonar = sonar_of(6.0, 18.0, 1200);
+  sonar.azimuth_rad = radians(60.0);
+  sonar.elevation_rad = radians(120.0);
+  sonar.bins_azimuth = 61;
+  sonar.bins_elevation = 600;
+  sonar.terms.level = plain_level();
+  sonar.terms.level->absorption = scene::SonarLevel::Absorption::kNone;
+  sonar.mount.pose.position_m = {0.0, -kDeep_m, 0.0};
+  scene::Scene scene;
+  scene.objects = {object_of(scene, scene::make_sphere(kSmall_m, 128), {0.0, -kDeep_m, -kAhead_m})};
+  scene.sonars = {sonar};
+  // By the ball's surface: cos(in) cos(out) over both legs squared, there and back the other way.
+  const Vec3 ball(0.0, -kDeep_m, -kAhead_m), eye(0.0, -kDeep_m, 0.0), image(0.0, kDeep_m, 0.0);
+  double direct = 0.0, ghost = 0.0, ghost_m = 0.0;
+  constexpr int kPoints = 20000;
+  for (int i = 0; i < kPoints; ++i) {
+    const double y = 1.0 - (2.0 * i + 1.0) / kPoints, turn = kPi * (1.0 + std::sqrt(5.0)) * i;
+    const double level = std::sqrt(1.0 - y * y);
+    const Vec3 n(level * std::cos(turn), y, level * std::sin(turn)), at = ball + kSmall_m * n;
+    const double back_m = glm::length(eye - at), there_m = glm::length(image - at);
+    const double back = glm::dot(n, eye - at) / back_m, there = glm::dot(n, image - at) / there_m;
+    if (back > 0.0) direct += back * back / std::pow(back_m, 4);
+    if (back <= 0.0 || there <= 0.0) continue;
+    const double power = 4.0 * 0.25 * back * there / std::pow(back_m * there_m, 2);
+    ghost += power;
+    ghost_m += power * 0.5 * (back_m + there_m);
+  }
+  scene.sonars[0].terms.ghosts = scene::SonarGhosts{.surface = true, .surface_reflection = 0.5};
+  const double level_db = 10.0 * std::log10(ghost / direct);
+  EXPECT_NEAR(ghost_over_direct_db(device(), scene, 0.5), level_db, 0.5);
+  EXPECT_NEAR(mean_ghost_range_m(device(), scene), ghost_m / ghost, 0.03);
+  // A pattern lets through what it does where the ball is.
+  constexpr double kWide_rad = radians(70.0);
+  scene.sonars[0].terms.beam.elevation = scene::SonarPattern{.half_power_rad = kWide_rad};
+  NERITIC_ASSERT_OK(const sonar::BeamPattern pattern,
+                    sonar::BeamPattern::of_half_power_width(sonar::BeamShape::kSinc, kWide_rad));
+  const double once = pattern.amplitude(std::atan2(2.0 * kDeep_m, kAhead_m));
+  EXPECT_NEAR(ghost_over_direct_db(device(), scene, 0.5),
+              level_db + 20.0 * std::log10(std::abs(once)), 0.6);
+}
+
 TEST_F(SonarGhost, WhatTurnsItsBackGivesNone) {
   scene::Scene scene = sphere_below_surface();
   scene.objects = {object_of(scene, scene::make_plane(1.0, 1.0), {0.0, -1.6, -kRange_m})};
