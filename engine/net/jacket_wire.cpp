@@ -1,5 +1,6 @@
 #include "engine/net/jacket_wire.hpp"
 
+#include <algorithm>
 #include <string_view>
 
 #include "engine/core/refusal.hpp"
@@ -33,10 +34,13 @@ Result<JacketPacket> decode_ubcd(Bytes bytes) {
   return out;
 }
 
+std::string_view without_spaces(std::string_view text) {
+  return text.substr(std::min(text.find_first_not_of(" \t\n\r"), text.size()));
+}
+
 // Takes a word from the front, with the spaces before it.
 bool take(std::string_view& text, std::string_view word) {
-  while (!text.empty() && (text[0] == ' ' || text[0] == '\t' || text[0] == '\n' || text[0] == '\r'))
-    text.remove_prefix(1);
+  text = without_spaces(text);
   if (!text.starts_with(word)) return false;
   text.remove_prefix(word.size());
   return true;
@@ -73,7 +77,8 @@ Result<JacketPacket> decode_jacket(Bytes bytes) {
   if (bytes.size() >= 4 &&
       std::string_view(reinterpret_cast<const char*>(bytes.data()), 4) == kUbcdMagic)
     return decode_ubcd(bytes);
-  if (!bytes.empty() && bytes[0] == std::byte{'['}) return decode_list(bytes);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (without_spaces(text).starts_with('[')) return decode_list(bytes);
   JacketPacket out;
   bool raw = bytes.size() == 3;
   for (std::size_t i = 0; raw && i < 3; ++i) {

@@ -92,6 +92,19 @@ TEST(JacketWire, PacketsHaveTheirVectorsValues) {
   }
 }
 
+TEST(JacketWire, AListMayHaveSpacesAnywhereBetweenItsWords) {
+  const auto decoded = [](std::string_view text) {
+    return decode_jacket(std::as_bytes(std::span(text.data(), text.size())));
+  };
+  for (const char* text : {" [true,false,false]", "\r\n\t[1 ,0, 0]", "[ true,false,false ] \n"}) {
+    const auto packet = decoded(text);
+    ASSERT_TRUE(packet.ok()) << text;
+    EXPECT_EQ(packet->pressed, (std::array{true, false, false})) << text;
+  }
+  for (const char* text : {"", " ", "   ", " true", " [tr ue,false,false]"})
+    EXPECT_FALSE(decoded(text).ok()) << text;
+}
+
 TEST(JacketWire, OneWrongBitIsRefused) {
   const auto bytes = bytes_of(wire_vectors()["jacket"]["vectors"][0]);
   for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
