@@ -6,15 +6,35 @@
 namespace neritic::net {
 
 struct ClientSocket::Parts {
+  void read_monitor();
+
+  // In the order in which they are made: each ends before what it uses.
   ZmqContext context{zmq_ctx_new()};
-  ZmqSocket dealer;
+  ZmqSocket monitor, dealer;
+  bool there = false;  // the connection
+  std::uint64_t closures = 0;
 };
+
+void ClientSocket::Parts::read_monitor() {
+  for (;;) {
+    ZmqMessage event, where;  // 16 bits of event, 32 of value; the address
+    if (!event.receive(monitor.get())) return;
+    if (event.more()) (void)where.receive(monitor.get());
+    std::uint16_t number = 0;
+    if (event.bytes().size() < sizeof number) continue;
+    std::memcpy(&number, event.bytes().data(), sizeof number);
+    if (number != ZMQ_EVENT_HANDSHAKE_SUCCEEDED && there) ++closures;
+    there = number == ZMQ_EVENT_HANDSHAKE_SUCCEEDED;
+  }
+}
 
 ClientSocket::ClientSocket(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 ClientSocket::~ClientSocket() = default;
 
 Result<std::unique_ptr<ClientSocket>> ClientSocket::connect(const ClientSocketOptions& options) {
   constexpr int kQueued = 1000, kReconnect_ms = 100, kReconnectMost_ms = 2000;
+  constexpr int kHeartbeat_ms = 5000, kDead_ms = 15000;
+  constexpr const char* kMonitor = "inproc://neritic.client.monitor";
   auto parts = std::make_unique<Parts>();
   parts->dealer.reset(zmq_socket(parts->context.get(), ZMQ_DEALER));
   void* const socket = parts->dealer.get();
@@ -23,6 +43,15 @@ Result<std::unique_ptr<ClientSocket>> ClientSocket::connect(const ClientSocketOp
   set_option(socket, ZMQ_RCVHWM, kQueued);
   set_option(socket, ZMQ_RECONNECT_IVL, kReconnect_ms);
   set_option(socket, ZMQ_RECONNECT_IVL_MAX, kReconnectMost_ms);
+  set_option(socket, ZMQ_HEARTBEAT_IVL, kHeartbeat_ms);
+  set_option(socket, ZMQ_HEARTBEAT_TIMEOUT, kDead_ms);
+  if (zmq_socket_monitor(socket, kMonitor,
+                         ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_DISCONNECTED) != 0)
+    return failure(ErrorCode::kInternal, "{}: {}", kMonitor, zmq_strerror(errno));
+  parts->monitor.reset(zmq_socket(parts->context.get(), ZMQ_PAIR));
+  set_option(parts->monitor.get(), ZMQ_LINGER, 0);
+  if (zmq_connect(parts->monitor.get(), kMonitor) != 0)
+    return failure(ErrorCode::kInternal, "{}: {}", kMonitor, zmq_strerror(errno));
   if (options.keys) {
     if (!is_key(options.server_z85))
       return refusal("the server's key", "\"" + options.server_z85 + "\"", "40 characters");
@@ -36,14 +65,25 @@ Result<std::unique_ptr<ClientSocket>> ClientSocket::connect(const ClientSocketOp
   return std::unique_ptr<ClientSocket>(new ClientSocket(std::move(parts)));
 }
 
+std::uint64_t ClientSocket::closures() {
+  parts_->read_monitor();
+  return parts_->closures;
+}
+
+bool ClientSocket::closed() {
+  parts_->read_monitor();
+  return parts_->closures > 0 && !parts_->there;
+}
+
 bool ClientSocket::send(const std::vector<Bytes>& frames) {
   return send_frames(parts_->dealer.get(), frames);
 }
 
 std::optional<std::vector<std::vector<std::byte>>> ClientSocket::receive(int wait_ms) {
   void* const socket = parts_->dealer.get();
-  zmq_pollitem_t item{socket, 0, ZMQ_POLLIN, 0};
-  if (zmq_poll(&item, 1, wait_ms) <= 0) return std::nullopt;
+  zmq_pollitem_t items[] = {{socket, 0, ZMQ_POLLIN, 0}, {parts_->monitor.get(), 0, ZMQ_POLLIN, 0}};
+  if (zmq_poll(items, 2, wait_ms) <= 0) return std::nullopt;
+  parts_->read_monitor();
   std::vector<std::vector<std::byte>> frames;
   for (bool more = true; more;) {
     ZmqMessage frame;

@@ -25,9 +25,14 @@ class ClientSocket {
   static Result<std::unique_ptr<ClientSocket>> connect(const ClientSocketOptions& options);
   ~ClientSocket();
 
+  // How often a connection that stood was closed by the server or its end. Closed: it is no more.
+  std::uint64_t closures();
+  bool closed();
+
   // False: too much waits to be sent.
   bool send(const std::vector<Bytes>& frames);
-  // The frames of the next message; nothing if none came for so long.
+  // The frames of the next message; nothing if none came for so long, or a connection began or
+  // ended meanwhile.
   std::optional<std::vector<std::vector<std::byte>>> receive(int wait_ms);
 
  private:

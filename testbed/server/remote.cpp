@@ -79,6 +79,17 @@ Result<Remote::Reply> Remote::call(json map, const std::vector<net::Bytes>& arra
   const std::vector<std::byte> packed = net::pack(map);
   std::vector<net::Bytes> frames{packed};
   frames.insert(frames.end(), arrays.begin(), arrays.end());
+  const auto closed = [&] {
+    return failure(ErrorCode::kIo,
+                   "{}: the connection was closed: the server has ended, or it takes this client "
+                   "no more",
+                   parts.where);
+  };
+  constexpr TimeNs kAgain_ns = 1'000'000'000;
+  for (const TimeNs until = now_ns() + kAgain_ns; parts.socket->closed() && now_ns() < until;)
+    (void)parts.socket->receive(50);  // of a request given up before
+  if (parts.socket->closed()) return closed();
+  const std::uint64_t closures = parts.socket->closures();
   if (!parts.socket->send(frames))
     return failure(ErrorCode::kIo, "{}: too much data waits to be sent", parts.where);
   const TimeNs until = now_ns() + static_cast<TimeNs>((parts.patience_s + lasts_s) * 1e9);
@@ -89,6 +100,7 @@ Result<Remote::Reply> Remote::call(json map, const std::vector<net::Bytes>& arra
                      "{}: no answer in {:g} s: no server, one that is busy, or one with other keys",
                      parts.where, parts.patience_s + lasts_s);
     auto got = parts.socket->receive(static_cast<int>(left / 1'000'000 + 1));
+    if (!got && parts.socket->closures() > closures) return closed();
     if (!got) continue;
     Reply reply{{}, std::move(*got)};
     NERITIC_TRY(reply.map,

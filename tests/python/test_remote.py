@@ -5,6 +5,8 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 import unittest
 import unittest.mock
 
@@ -147,6 +149,21 @@ class Remote(unittest.TestCase):
             self.assertEqual(*heard)
             self.assertEqual([m.data for m in heard[0]], [b"look", bytes(range(64))])
             self.assertEqual(here.hash, there.hash)
+
+    def test_the_end_of_a_server_is_noticed_at_once(self):
+        for end in ("terminate", "kill"):
+            served = Served()
+            with served as address, neritic.connect(address) as there:
+                there.tick(1)
+                timer = threading.Timer(0.3, getattr(served.process, end))
+                timer.start()
+                began = time.monotonic()
+                with self.assertRaisesRegex(neritic.Error, "the connection was closed: the server has ended"):
+                    while True:
+                        there.tick(24)
+                with self.assertRaisesRegex(neritic.Error, "the server has ended"):
+                    there.tick(1)
+                self.assertLess(time.monotonic() - began, 10.0)
 
     def test_keys_let_in_and_keep_out(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -278,6 +278,29 @@ TEST_F(ServerTest, ThousandsOfStrangersLeaveTheDiveAsItIs) {
   EXPECT_GT(sent_away(), 0u);
 }
 
+// Not after the minute that a tick may last.
+TEST_F(ServerTest, AServersEndIsNoticedAtOnce) {
+  serve();
+  auto remote = client();
+  done(*remote, {{"op", "tick"}, {"steps", 1}});
+  // While a request waits for its answer.
+  std::thread end([this] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    server_.reset();
+  });
+  const TimeNs begun = now_ns();
+  const auto reply = remote->call({{"op", "observe"}, {"wait_s", 60.0}}, {}, 60.0);
+  end.join();
+  ASSERT_FALSE(reply.ok());
+  EXPECT_NE(reply.error().message.find("the connection was closed: the server has ended"),
+            std::string::npos)
+      << reply.error().message;
+  // And each one after it.
+  EXPECT_NE(refused(*remote, {{"op", "tick"}, {"steps", 1}}).find("the server has ended"),
+            std::string::npos);
+  EXPECT_LT(1e-9 * static_cast<double>(now_ns() - begun), 5.0);
+}
+
 TEST(ArrayRing, GivesBackWhatWasPutUntilItIsOverwritten) {
   const auto ring = net::ArrayRing::create(1 << 16).value();
   const auto reader = net::ArrayRingReader::open(ring->path()).value();

@@ -25,7 +25,10 @@ from .world import MOST_STEPS, World
 _PROTOCOL = 1
 # Limits of one request (testbed/server/request.hpp).
 _STEPS, _WAIT_S = 100_000, 60.0
+# How long a call waits for a connection that was closed; a server that is no longer heard is gone.
+_AGAIN_S, _HEARTBEAT_MS, _DEAD_MS = 1.0, 5000, 15000
 _ROW = struct.Struct("<IIQqq")
+_EVENT = struct.Struct("=Hi")  # of the library's monitor, in this machine's byte order
 Row = tuple[tuple[int, int, int, int, int], NDArray[np.float64]]
 
 
@@ -86,7 +89,9 @@ class _Ring:
         return data if len(data) == size and claimed - position <= self.capacity else None
 
 
-def _end(socket: Any, context: Any) -> None:
+def _end(socket: Any, monitor: Any, context: Any) -> None:
+    socket.disable_monitor()
+    monitor.close(0)
     socket.close(0)
     context.term()
 
@@ -125,8 +130,13 @@ class Core:
         self._context = zmq.Context()
         socket = self._socket = self._context.socket(zmq.DEALER)
         socket.linger = 0
+        socket.heartbeat_ivl, socket.heartbeat_timeout = _HEARTBEAT_MS, _DEAD_MS
+        self._monitor = socket.get_monitor_socket(zmq.EVENT_HANDSHAKE_SUCCEEDED | zmq.EVENT_DISCONNECTED)
+        # Of the connection: whether it is there (None: it never was), and how often it was closed.
+        self._there: Optional[bool] = None
+        self._closures = 0
         # Also where close() was forgotten: a context waits for open sockets.
-        self._end = weakref.finalize(self, _end, socket, self._context)
+        self._end = weakref.finalize(self, _end, socket, self._monitor, self._context)
         if key is not None and server_key is not None:
             socket.curve_serverkey = _key(server_key, "public")
             socket.curve_publickey, socket.curve_secretkey = _key(key, "public"), _key(key, "secret")
@@ -158,6 +168,35 @@ class Core:
 
     # Messages.
 
+    def _watch(self) -> int:
+        """How often the connection was closed so far."""
+        while self._monitor.poll(0):
+            event, _ = _EVENT.unpack(self._monitor.recv_multipart()[0])
+            if event == self._zmq.EVENT_HANDSHAKE_SUCCEEDED:
+                self._there = True
+            elif self._there:
+                self._there = False
+                self._closures += 1
+        return self._closures
+
+    def _closed(self) -> Error:
+        return Error(f"{self._address}: the connection was closed: the server has ended, or it takes this client no more")
+
+    def _receive(self, until: float, closures: int) -> list[bytes]:
+        """The next message; an Error as soon as the connection is closed, or at that time. Empty: look again."""
+        left_s = max(until - time.monotonic(), 0.0)
+        poller = self._zmq.Poller()
+        poller.register(self._socket, self._zmq.POLLIN)
+        poller.register(self._monitor, self._zmq.POLLIN)
+        poller.poll(left_s * 1e3)
+        closed = self._watch() > closures
+        try:
+            return list(self._socket.recv_multipart(self._zmq.NOBLOCK))
+        except self._zmq.Again:
+            if closed:
+                raise self._closed() from None
+            return []
+
     def _call(self, op: str, lasts: float = 0.0, data: Optional[bytes] = None,
               **keys: Any) -> tuple[dict[str, Any], list[bytes]]:
         with self._lock:
@@ -165,15 +204,22 @@ class Core:
                 raise BadInput("found a world that is closed; accepted: neritic.connect()")
             self._next += 1
             frames = [self._msgpack.packb({"op": op, "id": self._next, **keys})]
+            again = time.monotonic() + _AGAIN_S
+            closures = self._watch()
+            while self._there is False and time.monotonic() < again:
+                self._monitor.poll(50)
+                closures = self._watch()
+            if self._there is False:
+                raise self._closed()
             self._socket.send_multipart(frames if data is None else [*frames, data])
             until = time.monotonic() + self._patience + lasts
             while True:
-                self._socket.rcvtimeo = max(int((until - time.monotonic()) * 1e3), 0)
-                try:
-                    frames = self._socket.recv_multipart()
-                except self._zmq.Again:
+                frames = self._receive(until, closures)
+                if not frames:
+                    if time.monotonic() < until:
+                        continue
                     raise Error(f"{self._address}: no answer in {self._patience + lasts:g} s: no server, "
-                                "one that is busy, or one with other keys") from None
+                                "one that is busy, or one with other keys")
                 answer = self._msgpack.unpackb(frames[0])
                 if answer.get("id") != self._next:
                     continue  # of a call that was given up
