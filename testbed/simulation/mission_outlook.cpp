@@ -8,6 +8,7 @@
 
 #include "diver/swimmer_constants.hpp"
 #include "rov/frames.hpp"
+#include "testbed/simulation/place_outlook.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -70,17 +71,6 @@ void add_trim(const PhysicsVehicle& vehicle, std::vector<std::string>& lines) {
   };
   add(off.x, 4, off.x > 0.0 ? "nose" : "stern");
   add(off.y, 3, off.y > 0.0 ? "starboard side" : "port side");
-}
-
-// Places in the air. A vehicle that floats comes no higher.
-void add_places_in_air(const PhysicsVehicle& vehicle, std::vector<std::string>& lines) {
-  const std::vector<Vec3> places = vehicle.mission->waypoints_ned_m();
-  for (std::size_t i = 0; i < places.size(); ++i)
-    if (places[i].z < 0.0) {
-      lines.push_back(fmt::format("{}: waypoint {} lies {:.3g} m above the surface", vehicle.name,
-                                  i + 1, -places[i].z));
-      return;
-    }
 }
 
 void add_buoyancy(const PhysicsVehicle& vehicle, std::vector<std::string>& lines) {
@@ -392,7 +382,8 @@ std::vector<std::string> cannot_hold(const PhysicsWorld& world) {
     add_axes(vehicle, lines);
     add_buoyancy(vehicle, lines);
     add_trim(vehicle, lines);
-    add_places_in_air(vehicle, lines);
+    add_places(world, vehicle, lines);
+    add_doppler_log(world, vehicle, lines);
     if (add_current(world, vehicle, lines)) continue;
     const auto legs = vehicle.mission->legs(vehicle.start, start);
     if (!add_no_way(world, vehicle, legs, lines)) add_slow(world, vehicle, legs, lines);

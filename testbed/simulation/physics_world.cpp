@@ -2,6 +2,7 @@
 // simulation of them.
 #include "testbed/simulation/physics_world.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/core/refusal.hpp"
@@ -29,13 +30,6 @@ Status check_anchor(const scene::Scene& scene, const scene::Object& object, bool
         scene.path, object.name, object.dynamics->file.string());
   return bad_input("{}: {}: tether_anchor_m found; accepted: no such key, since {} has no tether",
                    scene.path, object.name, object.dynamics->file.string());
-}
-
-std::string name_of_label(const scene::Scene& scene, std::uint32_t label) {
-  for (const scene::Object& object : scene.objects)
-    if (label >= object.instance && label < object.instance + object.instance_count())
-      return object.name;
-  return "something";
 }
 
 }  // namespace
@@ -82,6 +76,12 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
   if (scene.water && scene.water->waves && scene.water->waves_move)
     world->waves_.emplace(*scene.water->waves);
   NERITIC_TRY(world->solid_, static_world_of(scene));
+  for (const scene::Object& object : scene.objects) {
+    const auto found = scene.class_names.find(object.class_id);
+    world->solid_objects_.push_back(
+        {object.instance, static_cast<std::uint32_t>(object.instance_count()), object.name,
+         found != scene.class_names.end() && found->second == "seabed"});
+  }
   NERITIC_TRY_STATUS(world->choose_step(scene));
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     if (scene.objects[i].dynamics) NERITIC_TRY_STATUS(world->add_vehicle(scene, i));
@@ -177,8 +177,7 @@ Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index) {
   NERITIC_TRY_STATUS(check_anchor(scene, object, kind->model.vehicle.tether.has_value()));
   PhysicsVehicle out{.name = object.name, .object = index, .kind = *kind};
   out.failed_thrusters = dynamics.failed_thrusters;
-  if (dynamics.mission)
-    out.mission.emplace(scene, *dynamics.mission, movers_);
+  if (dynamics.mission) out.mission.emplace(scene, *dynamics.mission, movers_);
   out.wash = dynamics.wash;
   washes_ = washes_ || dynamics.wash;
   if (dynamics.tether_anchor_m)
@@ -253,9 +252,25 @@ Status PhysicsWorld::check_start(const scene::Scene& scene, const std::string& n
   for (const sim::Contact& contact : solid_.contacts(shape, start, 0.0, memory))
     if (contact.inside || contact.gap_m < -kMostStartDepth_m)
       return bad_input("{}: {}: starts {:.2f} m deep in {}; accepted: a place in the water",
-                       scene.path, name, -contact.gap_m,
-                       name_of_label(scene, contact.surface.label));
+                       scene.path, name, -contact.gap_m, solid_name(contact.surface.label));
   return {};
+}
+
+const PhysicsWorld::SolidObject* PhysicsWorld::solid_object(std::uint32_t label) const {
+  const auto found = std::ranges::find_if(solid_objects_, [&](const SolidObject& object) {
+    return label >= object.first && label < object.first + object.count;
+  });
+  return found == solid_objects_.end() ? nullptr : &*found;
+}
+
+std::string PhysicsWorld::solid_name(std::uint32_t label) const {
+  const SolidObject* object = solid_object(label);
+  return object ? object->name : "something";
+}
+
+bool PhysicsWorld::is_bed(std::uint32_t label) const {
+  const SolidObject* object = solid_object(label);
+  return object && object->bed;
 }
 
 const rov::SensorReadings* PhysicsWorld::readings(const PhysicsState& state,

@@ -109,6 +109,9 @@ class PhysicsWorld {
   const Things& things() const { return things_; }
   const Tethers& tethers() const { return tethers_; }
   const sim::StaticWorld& solid() const { return solid_; }
+  // The object of a label of solid(), and whether it is of class seabed.
+  std::string solid_name(std::uint32_t label) const;
+  bool is_bed(std::uint32_t label) const;
   std::uint64_t seed() const { return seed_; }
   double step_s() const { return step_s_; }
   const StepMethod& method() const { return method_; }
@@ -198,6 +201,13 @@ class PhysicsWorld {
   std::optional<sim::Current> current_;
   std::optional<SeaWaves> waves_;  // that move bodies
   sim::StaticWorld solid_;
+  struct SolidObject {
+    std::uint32_t first = 0, count = 0;  // its labels
+    std::string name;
+    bool bed = false;
+  };
+  std::vector<SolidObject> solid_objects_;
+  const SolidObject* solid_object(std::uint32_t label) const;
   VehicleKinds kinds_;
   std::vector<PhysicsVehicle> vehicles_;
   std::vector<PhysicsHuman> humans_;

@@ -1,0 +1,123 @@
+#include "testbed/simulation/place_outlook.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/sim/contact_memory.hpp"
+#include "rov/frames.hpp"
+
+namespace neritic::testbed {
+namespace {
+
+// No sea is deeper.
+constexpr double kDeepest_m = 12e3;
+// A leg is looked at in so many places, its ends among them; a long one more closely.
+constexpr int kPlacesALeg = 9;
+constexpr double kPlacesApart_m = 10.0;
+constexpr int kMostPlacesALeg = 200;
+
+// Places in the air. A vehicle that floats comes no higher.
+bool in_air(const PhysicsVehicle& vehicle, std::size_t waypoint, const Vec3& place_ned_m,
+            std::vector<std::string>& lines) {
+  if (place_ned_m.z >= 0.0) return false;
+  lines.push_back(fmt::format("{}: waypoint {} lies {:.3g} m above the surface", vehicle.name,
+                              waypoint + 1, -place_ned_m.z));
+  return true;
+}
+
+// The bed over a place, as a sensor that looks up from there would meet it.
+std::optional<sim::RayHit> bed_over(const PhysicsWorld& world, const Vec3& place_ned_m) {
+  auto hit = world.solid().cast(rov::world_from_ned(place_ned_m), Vec3(0.0, 1.0, 0.0),
+                                std::max(place_ned_m.z, 1.0));
+  if (hit && !world.is_bed(hit->label)) hit.reset();
+  return hit;
+}
+
+bool in_solid(const PhysicsWorld& world, const PhysicsVehicle& vehicle, std::size_t waypoint,
+              const MissionGuide::LegPoint& place, std::vector<std::string>& lines) {
+  const double allowed_m = vehicle.mission->acceptance_m();
+  const auto add = [&](double depth_m, const char* where, std::uint32_t label) {
+    lines.push_back(
+        fmt::format("{}: waypoint {} lies {:.3g} m {} {}: it is not reached; move it "
+                    "into the water, or give {} collision = false",
+                    vehicle.name, waypoint + 1, depth_m, where, world.solid_name(label),
+                    world.solid_name(label)));
+    return true;
+  };
+  if (const auto bed = bed_over(world, place.place_ned_m); bed && bed->distance_m > allowed_m)
+    return add(bed->distance_m, "below the bed", bed->label);
+  sim::ContactMemory memory;
+  const Pose pose =
+      rov::world_pose(place.place_ned_m, rov::heading_attitude(place.heading_rad.value_or(0.0)));
+  const sim::Contact* worst = nullptr;
+  const auto contacts = world.solid().contacts(vehicle.kind.solid.shape, pose, 0.0, memory);
+  for (const sim::Contact& contact : contacts)
+    if (-contact.gap_m > allowed_m && (!worst || contact.gap_m < worst->gap_m)) worst = &contact;
+  if (!worst) return false;
+  return add(-worst->gap_m, "in", worst->surface.label);
+}
+
+// Whether the log hears a bottom there, level, at the heading that the vehicle has.
+bool hears_bottom(const PhysicsWorld& world, const PhysicsVehicle& vehicle, const Vec3& place_ned_m,
+                  double heading_rad) {
+  rov::State state = vehicle.start;
+  state.position_ned_m = place_ned_m;
+  state.attitude = rov::heading_attitude(heading_rad);
+  return rov::read_dvl(*vehicle.file.sensors.dvl, state, world.rays(), rov::NoiseSource{}, 0)
+      .locked();
+}
+
+}  // namespace
+
+void add_places(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
+                std::vector<std::string>& lines) {
+  const std::size_t count = vehicle.mission->waypoint_count();
+  if (count == 0) return;
+  const auto legs = vehicle.mission->legs(vehicle.start, world.start());
+  bool air = false, solid = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    const MissionGuide::LegPoint& place = legs[i].points.back();
+    air = air || in_air(vehicle, i, place.place_ned_m, lines);
+    solid = solid || in_solid(world, vehicle, i, place, lines);
+  }
+}
+
+void add_doppler_log(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
+                     std::vector<std::string>& lines) {
+  if (!vehicle.file.sensors.dvl) return;
+  const rov::Dvl& dvl = *vehicle.file.sensors.dvl;
+  const bool empty = world.solid().counts().things == 0;
+  const auto legs = vehicle.mission->legs(vehicle.start, world.start());
+  if (legs.empty() && !empty) return;
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const MissionGuide::Leg& leg : legs) {
+    const Vec3 way = leg.to_ned_m - leg.from_ned_m;
+    const int places =
+        std::clamp(static_cast<int>(std::ceil(glm::length(way) / kPlacesApart_m)) + 1, kPlacesALeg,
+                   kMostPlacesALeg);
+    for (int i = 0; i < places && !empty; ++i) {
+      const Vec3 place = leg.from_ned_m + static_cast<double>(i) / (places - 1) * way;
+      const double heading_rad = leg.points[1].heading_rad.value_or(0.0);
+      if (hears_bottom(world, vehicle, place, heading_rad)) return;
+      const rov::RayQuery rays = world.rays();
+      nearest_m = std::min(nearest_m, rays.cast(rays.context, place, Vec3(0, 0, 1), kDeepest_m));
+    }
+  }
+  const std::string bed = empty ? "the scene has nothing solid"
+                          : std::isfinite(nearest_m)
+                              ? fmt::format(
+                                    "what lies under its way is {:.3g} m off at best, it "
+                                    "hears from {:.3g} to {:.3g} m",
+                                    nearest_m, dvl.least_m, dvl.most_m)
+                              : std::string("nothing solid lies under its way");
+  lines.push_back(fmt::format(
+      "{}: its DVL never hears a bottom: {}{}; add a bed (class = "
+      "\"seabed\"), dive nearer to it{}",
+      vehicle.name, bed, vehicle.navigation ? ", so that its navigation drifts" : "",
+      vehicle.navigation && !vehicle.file.sensors.usbl ? ", or add [usbl] to its file" : ""));
+}
+
+}  // namespace neritic::testbed
