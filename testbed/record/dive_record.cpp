@@ -85,14 +85,22 @@ void DiveRecorder::clear_rows() {
   rows_.humans.clear();
 }
 
+double DiveRecorder::off_waypoint_m(std::size_t vehicle, const VehicleState& state,
+                                    std::uint64_t count) const {
+  const std::vector<Vec3> places = world_.vehicles()[vehicle].mission->waypoints_ned_m();
+  return glm::distance(state.body.position_ned_m, places[count % places.size()]);
+}
+
 void DiveRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
   for (std::size_t i = 0; i < figures_.size(); ++i) {
     const VehicleState &now = snapshot.state.vehicles()[i], &before = last_.vehicles()[i];
     DiveFigures& figures = figures_[i];
     if (begun_) {
       figures.path_m += glm::distance(now.body.position_ned_m, before.body.position_ned_m);
-      if (now.mission.arrived > before.mission.arrived)
+      if (now.mission.arrived > before.mission.arrived) {
         figures.arrivals_s.push_back(snapshot.time_s);
+        figures.misses_m.push_back(off_waypoint_m(i, now, now.mission.arrived - 1));
+      }
     }
     figures.largest_speed_m_s =
         std::max(figures.largest_speed_m_s, glm::length(now.body.velocity.linear()));

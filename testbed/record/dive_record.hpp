@@ -35,8 +35,9 @@ struct DiveRow {
 struct DiveFigures {
   double path_m = 0.0, largest_speed_m_s = 0.0, largest_tilt_rad = 0.0;
   double shallowest_m = 1e9, deepest_m = -1e9;  // of its origin, below the still surface
-  std::vector<double> arrivals_s;               // of its waypoints
-  std::optional<double> battery_charge;         // of 1, where it has a battery
+  // At its waypoints: when it takes itself to be there, and how far off it truly is then.
+  std::vector<double> arrivals_s, misses_m;
+  std::optional<double> battery_charge;  // of 1, where it has a battery
   std::optional<double> battery_empty_from_s;
   // For a vehicle that flies by its own sensors: the distance from its estimated position.
   std::optional<double> navigation_error_m, largest_navigation_error_m;
@@ -67,6 +68,8 @@ class DiveRecorder {
  private:
   bool row_due(std::size_t vehicle, std::uint64_t step) const;
   bool human_row_due(std::uint64_t step) const;
+  // How far it truly is from the waypoint that follows so many, all rounds together.
+  double off_waypoint_m(std::size_t vehicle, const VehicleState& state, std::uint64_t count) const;
   DiveRow row_of(std::size_t vehicle, const sim::Snapshot<PhysicsState>& snapshot) const;
 
   const PhysicsWorld& world_;

@@ -27,6 +27,7 @@ TEST_F(DivePhysics, RunsOfSeedsEndInATable) {
   ASSERT_TRUE(runs.ok()) << json.out;
   ASSERT_EQ(runs->size(), 2u);
   EXPECT_NE((*runs)[0]["largest_navigation_error_m"], (*runs)[1]["largest_navigation_error_m"]);
+  for (const auto& run : *runs) EXPECT_EQ(run["truly_arrived"], run["arrived"]);
   // Too short for the way.
   const Outcome short_of = dive("--headless --seconds 0.5 --runs 1", "measured.toml");
   EXPECT_EQ(short_of.status, 1);
@@ -35,6 +36,47 @@ TEST_F(DivePhysics, RunsOfSeedsEndInATable) {
   EXPECT_EQ(dive("--headless --runs 2 --log x.csv", "measured.toml").status, 2);
   const Outcome one = dive("--headless --seconds 2 --seed 5", "measured.toml");
   EXPECT_NE(one.out.find("navigation off by up to 0."), std::string::npos) << one.out;
+}
+
+// A compass that is off by tens of degrees and no fix beside it: the vehicle believes that it
+// arrives, metres away. Such a mission was done before.
+TEST_F(DivePhysics, AMissionThatIsDoneInBeliefAloneIsMissedAndEndsWithStatusOne) {
+  const std::string vehicles = (test::source_dir() / "assets/vehicles").string();
+  ASSERT_TRUE(write_text(scratch_ / "lost_vehicle.toml",
+                         "include = \"" + vehicles +
+                             "/bluerov2_heavy_dynamics.toml\"\n[imu]\nrate_hz = "
+                             "200\n[dvl]\nrate_hz = 8\n[pressure]\nrate_hz = 20\n[compass]\n"
+                             "rate_hz = 50\nnoise_deg = { bias = 40 }\n")
+                  .ok());
+  ASSERT_TRUE(write_text(scratch_ / "lost.toml",
+                         "include = \"dive.toml\"\n[[vehicles]]\nname = \"rov\"\ndynamics = "
+                         "\"lost_vehicle.toml\"\nnavigation = \"measured\"\n"
+                         "[vehicles.mission]\nwaypoints = [ { position_m = [0, -6, -6] } ]\n")
+                  .ok());
+  const Outcome table = dive("--headless --seconds 60 --seed 5 --runs 3", "lost.toml");
+  EXPECT_EQ(table.status, 1);
+  EXPECT_NE(table.err.find(" missed though the vehicle believes it arrived"), std::string::npos)
+      << table.err;
+  EXPECT_NE(table.out.find("  missed\n"), std::string::npos) << table.out;
+  EXPECT_NE(
+      table.out.find(" missed: done as the vehicle believes, but truly off a waypoint by more "
+                     "than its radius and 0.5 m\n"),
+      std::string::npos)
+      << table.out;
+  const Outcome json = dive("--headless --seconds 60 --seed 5 --runs 3 --json", "lost.toml");
+  const auto runs = parse_json(json.out);
+  ASSERT_TRUE(runs.ok()) << json.out;
+  int missed = 0;
+  for (const auto& run : *runs) {
+    EXPECT_EQ(run["arrived"], 1);
+    ASSERT_EQ(run["true_misses_m"].size(), 1u);
+    const double miss_m = run["true_misses_m"][0];
+    EXPECT_LE(miss_m, run["largest_navigation_error_m"].get<double>() + 0.15);
+    EXPECT_EQ(run["truly_arrived"], miss_m <= 0.65 ? 1 : 0);
+    EXPECT_EQ(run["status"], miss_m <= 0.65 ? "done" : "missed");
+    missed += miss_m > 0.65 ? 1 : 0;
+  }
+  EXPECT_GT(missed, 0);
 }
 
 // Each with a line before the dive that says in numbers what does not hold, and with status 1 and a

@@ -73,6 +73,7 @@ nlohmann::json vehicle_json(const PhysicsVehicle& vehicle, const VehicleState& s
           {"waypoints", vehicle.mission ? vehicle.mission->waypoint_count() : 0},
           {"arrived", state.mission.arrived},
           {"arrivals_s", figures.arrivals_s},
+          {"true_misses_m", figures.misses_m},
           {"way_m", figures.path_m},
           {"largest_speed_m_s", figures.largest_speed_m_s},
           {"largest_tilt_deg", degrees(figures.largest_tilt_rad)},

@@ -79,10 +79,16 @@ Status dive_runs(const DiveFlags& flags, const scene::Scene& scene, double secon
   if (interrupt.requested()) return failure(ErrorCode::kInterrupted, "--runs: interrupted");
   const auto done =
       static_cast<std::size_t>(std::ranges::count_if(outcomes, &MissionOutcome::done));
+  const auto believed =
+      static_cast<std::size_t>(std::ranges::count_if(outcomes, &MissionOutcome::believes_done));
   print_outcomes(outcomes, flags.json);
   if (done < outcomes.size())
-    return failure(ErrorCode::kUnsupported, "{}: {} of {} missions not done in {:g} s", flags.scene,
-                   outcomes.size() - done, outcomes.size(), seconds);
+    return failure(ErrorCode::kUnsupported, "{}: {} of {} missions not done in {:g} s{}",
+                   flags.scene, outcomes.size() - done, outcomes.size(), seconds,
+                   believed > done
+                       ? fmt::format(", {} of them missed though the vehicle believes it arrived",
+                                     believed - done)
+                       : "");
   return {};
 }
 

@@ -18,7 +18,8 @@ inline std::uint64_t steps_in(double seconds, double step_s) {
 
 // Runs of the scene with the seeds from its own on, each until its missions are done or the seconds
 // are over. kBadInput if no vehicle has a mission with an end; another Error (exit status 1) if a
-// mission was not done. Precondition: PhysicsWorld::needed.
+// mission was not done, or in the vehicle's belief alone (mission_outcomes.hpp). Precondition:
+// PhysicsWorld::needed.
 Status dive_runs(const DiveFlags& flags, const scene::Scene& scene, double seconds,
                  const Interrupt& interrupt);
 

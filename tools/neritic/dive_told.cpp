@@ -1,5 +1,6 @@
 #include "tools/neritic/dive_told.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -24,7 +25,11 @@ std::string vehicle_line(const PhysicsVehicle& vehicle, const VehicleState& stat
     line +=
         fmt::format("{} of {} waypoints", state.mission.arrived, vehicle.mission->waypoint_count());
     if (!figures.arrivals_s.empty())
-      line += fmt::format(" (the last after {:.1f} s)", figures.arrivals_s.back());
+      line +=
+          fmt::format(" (the last after {:.1f} s{})", figures.arrivals_s.back(),
+                      vehicle.navigation ? fmt::format(", truly off by up to {:.2f} m",
+                                                       *std::ranges::max_element(figures.misses_m))
+                                         : std::string());
     line += ", ";
   }
   line += fmt::format(

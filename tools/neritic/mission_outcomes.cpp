@@ -10,15 +10,23 @@ using namespace testbed;
 namespace {
 
 std::string words(const MissionOutcome& o) {
-  return o.done ? "done" : "not done";
+  if (!o.believes_done) return "not done";
+  return o.done() ? "done" : "missed";
+}
+
+std::string metres_or(const std::optional<double>& metres, const char* other) {
+  return metres ? fmt::format("{:.2f} m", *metres) : std::string(other);
 }
 
 std::string row(const MissionOutcome& o) {
-  return fmt::format(
-      "{:>10}  {:<12} {:>3} of {:<3} {:>8.1f} s {:>12} {:>14}  {}\n", o.seed, o.vehicle, o.arrived,
-      o.waypoints, o.time_s,
-      o.largest_error_m ? fmt::format("{:.2f} m", *o.largest_error_m) : std::string("truth"),
-      o.touched_steps, words(o));
+  return fmt::format("{:>10}  {:<12} {:>3} of {:<3} {:>5} {:>10} {:>8.1f} s {:>12} {:>14}  {}\n",
+                     o.seed, o.vehicle, o.arrived, o.waypoints, o.truly_arrived(),
+                     metres_or(o.worst_miss_m(), "-"), o.time_s,
+                     metres_or(o.largest_error_m, "truth"), o.touched_steps, words(o));
+}
+
+nlohmann::json metres_or_null(const std::optional<double>& number) {
+  return number ? nlohmann::json(*number) : nlohmann::json();
 }
 
 nlohmann::json json_of(const MissionOutcome& o) {
@@ -26,14 +34,26 @@ nlohmann::json json_of(const MissionOutcome& o) {
           {"vehicle", o.vehicle},
           {"waypoints", o.waypoints},
           {"arrived", o.arrived},
+          {"truly_arrived", o.truly_arrived()},
+          {"true_misses_m", o.misses_m},
+          {"to_next_m", metres_or_null(o.left_m)},
           {"last_arrival_s", o.time_s},
-          {"largest_navigation_error_m",
-           o.largest_error_m ? nlohmann::json(*o.largest_error_m) : nlohmann::json()},
+          {"largest_navigation_error_m", metres_or_null(o.largest_error_m)},
           {"touched_steps", o.touched_steps},
           {"status", words(o)}};
 }
 
 }  // namespace
+
+std::optional<double> MissionOutcome::worst_miss_m() const {
+  if (misses_m.empty()) return std::nullopt;
+  return *std::ranges::max_element(misses_m);
+}
+
+std::size_t MissionOutcome::truly_arrived() const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      misses_m, [&](double miss_m) { return miss_m <= acceptance_m + kMissMargin_m; }));
+}
 
 bool has_end(const PhysicsVehicle& vehicle) {
   return vehicle.mission && vehicle.mission->waypoint_count() > 0 && !vehicle.mission->repeats();
@@ -47,24 +67,35 @@ std::vector<MissionOutcome> outcomes_of(const PhysicsWorld& world, const Physics
     if (!has_end(vehicle)) continue;
     const DiveFigures& figures = log.recorder().figures()[i];
     const auto& own = state.vehicles()[i];
-    outcomes.push_back({vehicle.name, seed, own.mission.arrived, vehicle.mission->waypoint_count(),
-                        figures.arrivals_s.empty() ? 0.0 : figures.arrivals_s.back(),
-                        figures.largest_navigation_error_m, own.contact.touched_steps,
-                        vehicle.mission->done(own.mission)});
+    MissionOutcome& out = outcomes.emplace_back();
+    out.vehicle = vehicle.name;
+    out.seed = seed;
+    out.arrived = own.mission.arrived;
+    out.waypoints = vehicle.mission->waypoint_count();
+    out.time_s = figures.arrivals_s.empty() ? 0.0 : figures.arrivals_s.back();
+    out.misses_m = figures.misses_m;
+    out.acceptance_m = vehicle.mission->acceptance_m();
+    out.largest_error_m = figures.largest_navigation_error_m;
+    out.touched_steps = own.contact.touched_steps;
+    out.believes_done = vehicle.mission->done(own.mission);
+    if (!out.believes_done)
+      out.left_m =
+          glm::distance(own.body.position_ned_m, vehicle.mission->waypoints_ned_m()[out.arrived]);
   }
   return outcomes;
 }
 
 void print_outcomes(const std::vector<MissionOutcome>& outcomes, bool as_json) {
   const auto done = std::ranges::count_if(outcomes, &MissionOutcome::done);
+  const auto believed = std::ranges::count_if(outcomes, &MissionOutcome::believes_done);
   if (as_json) {
     nlohmann::json json = nlohmann::json::array();
     for (const MissionOutcome& o : outcomes) json.push_back(json_of(o));
     fmt::print("{}\n", json_text(json));
     return;
   }
-  fmt::print("{:>10}  {:<12} {:>10} {:>10} {:>12} {:>14}  status\n", "seed", "vehicle", "waypoints",
-             "last after", "nav. error", "touched steps");
+  fmt::print("{:>10}  {:<12} {:>10} {:>5} {:>10} {:>10} {:>12} {:>14}  status\n", "seed", "vehicle",
+             "waypoints", "truly", "true miss", "last after", "nav. error", "touched steps");
   double worst_m = 0.0;
   std::size_t touched = 0;
   for (const MissionOutcome& o : outcomes) {
@@ -74,6 +105,11 @@ void print_outcomes(const std::vector<MissionOutcome>& outcomes, bool as_json) {
   }
   fmt::print("{} of {} missions done, {} touched something, navigation off by up to {:.2f} m\n",
              done, outcomes.size(), touched, worst_m);
+  if (believed > done)
+    fmt::print(
+        "{} missed: done as the vehicle believes, but truly off a waypoint by more than its radius "
+        "and {:g} m\n",
+        believed - done, kMissMargin_m);
 }
 
 }  // namespace neritic::tools

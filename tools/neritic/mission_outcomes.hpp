@@ -1,4 +1,5 @@
-// How missions went, a row a vehicle and seed: what --runs of `dive` and `render` print.
+// How missions went as the vehicles believe and in truth, a row a vehicle and seed: what --runs of
+// `dive` and `render` print.
 #pragma once
 
 #include <optional>
@@ -14,11 +15,25 @@ namespace neritic::tools {
 struct MissionOutcome {
   std::string vehicle;
   std::uint64_t seed = 0, arrived = 0, waypoints = 0;
-  double time_s = 0.0;                    // of the last arrival
+  double time_s = 0.0;  // of the last arrival
+  // How far it truly was from each waypoint where it took itself to be there, and at the end from
+  // the next one that it did not reach.
+  std::vector<double> misses_m;
+  std::optional<double> left_m;
+  double acceptance_m = 0.0;              // of its waypoints
   std::optional<double> largest_error_m;  // of its navigation
   std::uint64_t touched_steps = 0;
-  bool done = false;
+  bool believes_done = false;
+
+  std::optional<double> worst_miss_m() const;
+  // Waypoints where it truly was within acceptance_m + kMissMargin_m of them.
+  std::size_t truly_arrived() const;
+  // Done as it believes and in truth.
+  bool done() const { return believes_done && truly_arrived() == misses_m.size(); }
 };
+// A vehicle that flies on what it measures is truly at a waypoint where it is off by no more than
+// the waypoint's radius and this margin: five sigmas of a surveyed launch (rov/navigation.hpp).
+inline constexpr double kMissMargin_m = 0.5;
 
 // Whether a vehicle has a mission that ends.
 bool has_end(const testbed::PhysicsVehicle& vehicle);
