@@ -13,8 +13,6 @@ namespace {
 
 constexpr std::uint64_t kRangingStream = 0x72616e67696e67ull;  // of random numbers
 constexpr std::uint64_t kRangingBytes = 1, kAnswerBytes = 2;
-// The most of a modem in one step; an inbox drains no more.
-constexpr std::uint64_t kMostAsked = 2 * SampleInbox::kCapacity;
 
 sonar::ModemSettings settings_of(const scene::Modem& modem) {
   return {.source_level_db = modem.source_level_db,
@@ -167,11 +165,11 @@ void Modems::say(const Call& call, std::size_t modem, sonar::ModemMessage messag
 void Modems::send_asked(const Call& call, std::size_t index) const {
   const ModemInputs& asked = call.inputs.modems()[index];
   ModemTasks& tasks = call.after.modem_tasks()[index];
-  // More in a step than the queue keeps: the newest stand, all are counted.
-  if (asked.asked - tasks.sent > kMostAsked) tasks.sent = asked.asked - kMostAsked;
-  for (; tasks.sent < asked.asked; ++tasks.sent) {
-    const bool kept = asked.asked - tasks.sent <= ModemInputs::kQueued;
-    const ModemSend said = kept ? asked.queue[tasks.sent % ModemInputs::kQueued] : ModemSend{};
+  // With the requests, answers and messages that come in a step.
+  static_assert(ModemQueue::kInStep + 2 + sonar::ModemState::kHearing <= sonar::ModemState::kKept);
+  const std::uint64_t end = std::min(asked.asked, tasks.sent + ModemQueue::kInStep);
+  for (; tasks.sent < end; ++tasks.sent) {
+    const ModemSend& said = asked.messages[tasks.sent % ModemQueue::kMost];
     sonar::ModemMessage message;
     message.to = said.to == 0 ? sonar::kToAll : said.to - 1;
     message.bytes = said.to <= all_.size() ? said.bytes : 0;  // to no modem: refused

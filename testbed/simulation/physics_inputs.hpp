@@ -2,6 +2,7 @@
 // each group of them. One block of plain structs (testbed/samples/group_inputs.hpp). Any thread.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -11,15 +12,47 @@
 
 namespace neritic::testbed {
 
-// Messages that a modem was asked to send; the state counts what it has sent of it.
+// Messages that wait for a modem, which handles kInStep of them a step: with all else that may
+// happen to it in a step their reports fit in its ring (sonar::ModemState::kKept).
+struct ModemQueue {
+  static constexpr std::uint64_t kMost = 32, kInStep = 4;
+  std::uint64_t waiting = 0, at_step = 0;
+
+  // Another one before this step. False: as many as fit wait already.
+  bool add(std::uint64_t step) {
+    const std::uint64_t steps = step > at_step ? step - at_step : 0;
+    waiting -= std::min(waiting, kInStep * std::min(steps, kMost));
+    at_step = step;
+    if (waiting == kMost) return false;
+    ++waiting;
+    return true;
+  }
+
+  static void fields(auto&& field, auto& self) {
+    field("waiting", self.waiting);
+    field("at_step", self.at_step);
+  }
+};
+
+// Messages that a modem was asked to send; the state counts those that it has handled.
 struct ModemInputs {
-  static constexpr std::size_t kQueued = 4;  // in a step
   std::uint64_t asked = 0;
-  std::array<ModemSend, kQueued> queue{};  // a ring: message k is at k % kQueued
+  std::uint64_t crowded_out = 0;  // refused: the queue was full
+  ModemQueue queue;
+  std::array<ModemSend, ModemQueue::kMost> messages{};  // a ring: message k is at k % kMost
+
+  void add(const ModemSend& message, std::uint64_t step) {
+    if (queue.add(step))
+      messages[asked++ % ModemQueue::kMost] = message;
+    else
+      ++crowded_out;
+  }
 
   static void fields(auto&& field, auto& self) {
     field("asked", self.asked);
+    field("crowded_out", self.crowded_out);
     field("queue", self.queue);
+    field("messages", self.messages);
   }
 };
 

@@ -131,8 +131,7 @@ PhysicsState PhysicsWorld::start() const {
 void PhysicsWorld::apply(PhysicsInputs& inputs, const Sample& sample, std::uint64_t step) const {
   const Stream& stream = streams_[sample.header.stream];
   if (const ModemSend* message = std::get_if<ModemSend>(&sample.payload)) {
-    ModemInputs& modem = inputs.modems()[*modems_.find(stream.sort, stream.owner)];
-    modem.queue[modem.asked++ % ModemInputs::kQueued] = *message;
+    inputs.modems()[*modems_.find(stream.sort, stream.owner)].add(*message, step);
     return;
   }
   if (const GripUse* use = std::get_if<GripUse>(&sample.payload)) {

@@ -210,6 +210,7 @@ void World::receive(std::span<const Sample> outputs) {
     parts.restored = parts.physics->restored();
     parts.receiver->forget();
     parts.holders.clear();
+    parts.messages.clear();
   } else {
     parts.receiver->receive(outputs);
   }
@@ -364,6 +365,7 @@ Status World::restore(std::span<const std::byte> bytes) {
       NERITIC_CHECK(parts.physics->inbox().open(name).ok(), "{}", name);
     parts.sequences.clear();
     parts.holders.clear();
+    parts.messages.clear();
   }
   parts.begin_loop();
   return status;

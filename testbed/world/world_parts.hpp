@@ -95,6 +95,7 @@ struct World::Parts {
   std::map<std::string, SourceId> sources;
   std::map<std::pair<SourceId, StreamId>, std::uint64_t> sequences;
   std::map<std::pair<StreamId, std::uint64_t>, Holder> holders;  // by event stream and group
+  std::map<StreamId, ModemQueue> messages;                       // that wait for a modem
 
   bool attached() const { return !owned_physics; }
   const PhysicsWorld& world() const { return physics->world(); }

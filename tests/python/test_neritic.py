@@ -170,6 +170,20 @@ class Worlds(unittest.TestCase):
             with self.assertRaises(neritic.BadInput):
                 call()
 
+    def test_each_of_many_messages_in_a_tick_has_its_event(self):
+        world = neritic.open(TALK, seed=1)
+        world.tick(240)
+        events = []
+        world.on("diver/modem", events.append)
+        for i in range(20):
+            world["diver"].send(f"m{i:02}", to="rov")
+        world.tick(60)
+        own = [neritic.MODEM_EVENTS[int(e.event)] for e in events if e.bytes == 3]
+        self.assertEqual(own, ["sent"] + 19 * ["refused"])
+        with self.assertRaisesRegex(neritic.BadInput, "one more message; accepted: up to 32"):
+            for i in range(33):
+                world["diver"].send("x", to="rov")
+
     def test_grips_and_regulators_do_what_they_are_told(self):
         with neritic.open(str(ROOT / "assets/experiments/team/tool.toml")) as world:
             grip = world.tick(24)["rov/gripper"]

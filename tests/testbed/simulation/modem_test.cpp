@@ -82,6 +82,33 @@ TEST(SceneModem, LossesAreToldWithTheirCauseAndRefusalsToTheSender) {
   EXPECT_EQ(dive.state().modems()[1].counts.refused, 2u);
 }
 
+// Each has its event, in order, with its content: the first goes out, the others find it sending.
+TEST(SceneModem, EachOfManyMessagesInAStepHasItsEvent) {
+  TestDive dive = two(two_text(300.0));
+  for (std::uint32_t i = 0; i < ModemQueue::kMost; ++i) say(dive, "ada/send", 2, 20, i);
+  const auto got = heard(dive, "ada/modem", 0.2);
+  ASSERT_EQ(got.size(), ModemQueue::kMost);
+  for (std::uint32_t i = 0; i < got.size(); ++i) {
+    EXPECT_EQ(got[i].event, i == 0 ? ModemEvent::kSent : ModemEvent::kRefused) << i;
+    EXPECT_EQ(got[i].to, 2u) << i;
+    EXPECT_EQ(got[i].bytes, 20u) << i;
+    EXPECT_EQ(got[i].words[0], i);
+  }
+}
+
+// A flood leaves those that came first; the queue has room again once they are handled.
+TEST(SceneModem, AFloodKeepsTheMessagesThatCameFirst) {
+  TestDive dive = two(two_text(300.0));
+  for (std::uint32_t i = 0; i < 500; ++i) say(dive, "ada/send", 2, 20, i);
+  const auto got = heard(dive, "bob/modem", 1.0);
+  ASSERT_EQ(got.size(), 1u);
+  EXPECT_EQ(got[0].words[0], 0u);
+  EXPECT_EQ(dive.state().modems()[0].counts.refused, ModemQueue::kMost - 1);
+  EXPECT_EQ(dive.simulation->inputs().modems()[0].crowded_out, 500 - ModemQueue::kMost);
+  say(dive, "ada/send", 2, 20, 501);
+  EXPECT_EQ(heard(dive, "bob/modem", 1.0).at(0).words[0], 501u);
+}
+
 TEST(SceneModem, AUsblRangesByTheTravelThereAndBack) {
   const std::string ranging =
       "modem = { fading = false, usbl = { target = \"bob\", interval_s = 2, range_noise_m = 0, "
