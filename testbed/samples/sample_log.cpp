@@ -76,6 +76,8 @@ SampleLogWriter::SampleLogWriter(recording::McapOut& out, const SampleLog& run,
     out_.attachment({0, at, kSceneAttachment, "application/toml", bytes_of(run.scene_text)});
   if (!run.start_state.empty())
     out_.attachment({0, at, kStateAttachment, "application/octet-stream", run.start_state});
+  // Again: a damaged place leaves one of the two, without which nothing can be replayed.
+  out_.metadata(facts);
   const auto channel = [&](const char* topic, const char* type, const char* lines) {
     return out_.add_channel(
         {out_.add_schema(recording::own_schema(type, lines)), topic, "cdr", {}});

@@ -62,6 +62,12 @@ class LogVisitor final : public recording::McapVisitor {
     Use use = Use::kNone;
     StreamId stream = 0;  // of the log
   };
+  Status facts(const recording::McapMetadata& metadata);
+  Error unknown_run() const {
+    return bad_facts_
+               ? *bad_facts_
+               : refusal(name_, "an MCAP file without what was run", "a recording of this program");
+  }
   Status step(std::span<const std::byte> bytes);
   Status source(std::span<const std::byte> bytes);
   Status sample(StreamId stream, std::span<const std::byte> bytes);
@@ -69,15 +75,24 @@ class LogVisitor final : public recording::McapVisitor {
   const std::string& name_;
   SampleLog log_;
   bool known_ = false;  // its metadata came
-  bool gap_ = false;    // steps are missing: nothing that comes later is of use
+  std::optional<Error> bad_facts_;
+  bool gap_ = false;  // steps are missing: nothing that comes later is of use
   // Set at the first step after missing ones.
   std::optional<Error> doubt_;
   std::map<std::uint16_t, recording::McapSchema> schemas_;
   std::map<std::uint16_t, Channel> channels_;
 };
 
+// Of two copies the first good one counts: this record has no CRC of its own.
 Status LogVisitor::metadata(const recording::McapMetadata& metadata) {
   if (metadata.name != kRunMetadata || known_) return {};
+  const Status read = facts(metadata);
+  known_ = read.ok();
+  if (!known_ && !bad_facts_) bad_facts_ = read.error();
+  return {};
+}
+
+Status LogVisitor::facts(const recording::McapMetadata& metadata) {
   const auto word = [&](const char* key) {
     const auto at = metadata.words.find(key);
     return at == metadata.words.end() ? std::string() : at->second;
@@ -98,7 +113,6 @@ Status LogVisitor::metadata(const recording::McapMetadata& metadata) {
   if (const std::string hash = word("scene_hash");
       !hash.empty() && !parse(hash, log_.scene_hash, 16))
     return refusal(name_, fmt::format("scene_hash '{}'", printable(hash)), "16 digits");
-  known_ = true;
   return {};
 }
 
@@ -151,8 +165,7 @@ Status LogVisitor::channel(std::uint16_t id, const recording::McapChannel& chann
 Status LogVisitor::message(const recording::McapMessage& message) {
   const auto at = channels_.find(message.channel);
   if (at == channels_.end()) return {};
-  if (!known_ && at->second.use != Use::kNone)
-    return refusal(name_, "an MCAP file without what was run", "a recording of this program");
+  if (!known_ && at->second.use != Use::kNone) return unknown_run();
   const bool is_step = at->second.use == Use::kStep;
   if (gap_ || (doubt_ && !is_step)) return {};
   switch (at->second.use) {
@@ -234,8 +247,7 @@ Status LogVisitor::sample(StreamId stream, std::span<const std::byte> bytes) {
 }
 
 Result<SampleLog> LogVisitor::log(const recording::McapReport& report) {
-  if (!known_)
-    return refusal(name_, "an MCAP file without what was run", "a recording of this program");
+  if (!known_) return unknown_run();
   if (gap_ && log_.hashes.empty())
     return failure(ErrorCode::kUnsupported, "{}: {}: it cannot be replayed", name_, log_.damage);
   if (doubt_ && !gap_) return *doubt_;

@@ -139,6 +139,42 @@ TEST_F(Recording, OneWithoutItsFirstChunkIsRescuedForExport) {
   EXPECT_NEAR(std::stod(table("t/rov_odometry.csv").at("time_s").back()), 4.0, 1e-6);
 }
 
+// Bits of the facts of the run flip: of one copy the other one counts, of both nothing can be
+// replayed, but the rest is exported.
+TEST_F(Recording, ADamagedFactOfTheRunLeavesItsCopyOrTheTables) {
+  const std::string whole = read_text(scratch_ / "a.mcap").value();
+  const auto flip = [](std::string& bytes, std::size_t from, std::string_view word) {
+    const std::size_t at = bytes.find(word, from);
+    bytes.at(at) = static_cast<char>(bytes[at] ^ 1);
+    return at + word.size();
+  };
+  for (const bool both : {false, true})
+    for (const char* word : {"first_step", "step_s", "format"}) {
+      std::string bytes = whole;
+      const std::size_t after = flip(bytes, 0, word);
+      if (both) flip(bytes, after, word);
+      ASSERT_TRUE(write_text(scratch_ / "bad.mcap", bytes).ok());
+      std::filesystem::remove(scratch_ / "new.mcap");
+      const Outcome mended =
+          neritic("recording repair " + file("bad.mcap") + " --out " + file("new.mcap"));
+      EXPECT_EQ(mended.status, 0) << mended.err;
+      const Outcome check = neritic("recording check " + file("new.mcap"));
+      EXPECT_EQ(check.status, both ? 1 : 0) << check.err;
+      if (both) {
+        EXPECT_NE(check.err.find(": it cannot be replayed, only exported"), std::string::npos)
+            << check.err;
+        EXPECT_EQ(std::ranges::count(check.err, '\n'), 1) << check.err;
+        EXPECT_NE(mended.out.find(": it cannot be replayed, only exported"), std::string::npos)
+            << mended.out;
+      } else {
+        EXPECT_EQ(steps_in(check.out), "960");
+      }
+      const Outcome csv = neritic("recording export " + file("new.mcap") + " --out " + file("t") +
+                                  " --topic /rov/odometry");
+      EXPECT_EQ(csv.status, 0) << csv.err;
+    }
+}
+
 TEST_F(Recording, RepairMakesNoFileOfNothingAndReplacesNone) {
   ASSERT_EQ(dive("--headless --seconds 0.5 --record " + file("a.mcap")).status, 0);
   damage("bad.mcap", 1'000'000, 0);

@@ -17,6 +17,8 @@ namespace {
 
 using recording::McapReport;
 
+constexpr std::string_view kNoReplay = ": it cannot be replayed";
+
 struct Topic {
   std::string name, type;
   std::uint64_t messages = 0, bytes = 0;
@@ -119,8 +121,13 @@ Result<std::string> info(const RecordingFlags& flags) {
   return text;
 }
 
-std::string steps_words(const testbed::SampleLog& log) {
-  return fmt::format(", {} steps to replay", log.steps());
+// Of one that cannot be replayed: why not, and what can be done with it.
+std::string steps_words(const Result<testbed::SampleLog>& log, const std::string& file) {
+  if (log.ok()) return fmt::format(", {} steps to replay", log->steps());
+  std::string why = log.error().message;
+  if (why.starts_with(file + ": ")) why.erase(0, file.size() + 2);
+  if (why.ends_with(kNoReplay)) why.resize(why.size() - kNoReplay.size());
+  return fmt::format("; {}{}, only exported", why, kNoReplay);
 }
 
 Result<std::string> check(const RecordingFlags& flags) {
@@ -128,15 +135,12 @@ Result<std::string> check(const RecordingFlags& flags) {
   recording::McapVisitor nobody;
   NERITIC_TRY(const McapReport report,
               recording::read_mcap(*source, flags.file, nobody, recording::AfterDamage::kGoOn));
-  std::string steps;
   const auto log = testbed::read_sample_log(flags.file);
-  if (log.ok())
-    steps = steps_words(*log);
-  else if (report.whole)
-    return log.error();
-  if (report.whole && log.ok() && !log->whole)
-    return failure(ErrorCode::kUnsupported, "{}: {}; {} chunks and {} messages are good{}",
-                   flags.file, log->damage, report.chunks, report.messages, steps);
+  const std::string steps = steps_words(log, flags.file);
+  if (report.whole && !(log.ok() && log->whole))
+    return failure(ErrorCode::kUnsupported, "{}: {}{} chunks and {} messages are good{}",
+                   flags.file, log.ok() ? log->damage + "; " : "", report.chunks, report.messages,
+                   steps);
   if (report.whole)
     return fmt::format("{}: whole; {} chunks with right CRCs and indexes, {} messages{}",
                        flags.file, report.chunks, report.messages, steps);
@@ -169,9 +173,9 @@ Result<std::string> repair(const RecordingFlags& flags) {
       return failure(ErrorCode::kIo, "{}: cannot be written: {}", flags.out.string(),
                      error.message());
   }
-  const auto log = testbed::read_sample_log(flags.out);
-  return fmt::format("{}: {} messages of {} chunks{}; {}", flags.out.string(), report.messages,
-                     report.chunks, log.ok() ? steps_words(*log) : "",
+  const std::string out = flags.out.string();
+  return fmt::format("{}: {} messages of {} chunks{}; {}", out, report.messages, report.chunks,
+                     steps_words(testbed::read_sample_log(flags.out), out),
                      report.damages > 0
                          ? fmt::format("{} damaged places are left out", report.damages)
                      : report.whole ? "the file was whole"
