@@ -42,12 +42,14 @@ void main() {
   float turn = 6.2831853 * fract(52.9829189 * fract(dot(vec2(at.xy), vec2(0.06711056, 0.00583715))));
   // How far off anything spreads to here from.
   float far_px = own_px;
-  for (uint i = 0u; i < 16u; ++i) {
-    float r = focus.widest_px * sqrt((float(i) + 0.5) / 16.0), angle = turn + 2.39996323 * float(i);
-    ivec2 offset = ivec2(round(r * vec2(cos(angle), sin(angle))));
-    float spot_px = spot_here(ivec3(clamp(at.xy + offset, ivec2(0), size - 1), at.z), own_m, own_px);
-    if (spot_px > 0.6 * r) far_px = max(far_px, spot_px);
-  }
+  // Rings of six: a surface that spreads to here has one of them on it, unless only its spots' rims reach.
+  for (float r = focus.widest_px; r > 1.0; r *= 0.54)
+    for (uint i = 0u; i < 6u; ++i) {
+      float angle = turn + r + 1.04719755 * float(i);
+      ivec2 offset = ivec2(round(r * vec2(cos(angle), sin(angle))));
+      float spot_px = spot_here(ivec3(clamp(at.xy + offset, ivec2(0), size - 1), at.z), own_m, own_px);
+      if (spot_px > 0.5 * r) far_px = max(far_px, spot_px);
+    }
   // What is nearer spreads over this pixel and covers a share of it. The pixel's own surface covers a share of the
   // rest, and what lies behind it shows through: as the samples of its own spot find the two.
   vec4 nearer = vec4(0.0), behind = vec4(0.0);
