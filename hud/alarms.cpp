@@ -83,13 +83,14 @@ AlarmState step_alarms(const AlarmState& before, const DiveData& data) {
   return after;
 }
 
-AlarmWords words_of(Alarm alarm, AlarmLevel level) {
+AlarmWords words_of(Alarm alarm, AlarmLevel level, bool other_gas) {
   const bool danger = level == AlarmLevel::kDanger;
   switch (alarm) {
     case Alarm::kLink:
       return {"CONNECTION LOST", "USE OWN GAUGES"};
     case Alarm::kGas:
-      return danger ? AlarmWords{"NO GAS", "CHANGE GAS"} : AlarmWords{"GAS LOW", "GO UP"};
+      if (!danger) return {"GAS LOW", "GO UP"};
+      return {"NO GAS", other_gas ? "CHANGE GAS" : "BUDDY'S GAS OR GO UP"};
     case Alarm::kCeiling:
       return {"ABOVE CEILING", "GO DOWN"};
     case Alarm::kOxygen:

@@ -41,7 +41,8 @@ AlarmState step_alarms(const AlarmState& before, const DiveData& data);
 struct AlarmWords {
   const char *what, *act;
 };
-AlarmWords words_of(Alarm alarm, AlarmLevel level);
+// other_gas: another tank has gas that can be breathed here (DiveData).
+AlarmWords words_of(Alarm alarm, AlarmLevel level, bool other_gas = false);
 const char* name_of(Alarm alarm);       // "link", "gas", "ceiling", "oxygen", "ascent", "no_stop"
 const char* name_of(AlarmLevel level);  // "off", "caution", "danger"
 

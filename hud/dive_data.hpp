@@ -51,6 +51,7 @@ struct DiveData {
   double tank_pa = kUnknown, gas_min = kUnknown;       // minutes until the reserve at this rate
   double needed_l = kUnknown, available_l = kUnknown;  // for the ascent, and in the tank
   bool out_of_gas = false;
+  bool other_gas = false;  // another of the diver's tanks has gas that can be breathed here
 
   // Jacket and body. buttons: diver::kInflate, kDeflate, kDump.
   double jacket_m3 = kUnknown, jacket_full_m3 = kUnknown;

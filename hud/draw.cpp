@@ -27,7 +27,7 @@ void draw_limit(Painter& p, const Box& box, const Shown& shown, double size, dou
     p.cell({box, "NO STOP", shown.no_stop.view(), "min", size, label_size, limit_tone(shown)});
     return;
   }
-  const double part = 0.5 * box.w;
+  const double part = 0.58 * box.w;  // tenths of a metre take more room than minutes
   p.cell({{box.x, box.y, part, box.h},
           with_unit("STOP", unit_names(shown.units).depth).view(),
           shown.stop.view(),
@@ -35,7 +35,12 @@ void draw_limit(Painter& p, const Box& box, const Shown& shown, double size, dou
           size,
           label_size,
           limit_tone(shown)});
-  p.cell({{box.x + part, box.y, part, box.h}, "min", shown.stop_min.view(), "", size, label_size});
+  p.cell({{box.x + part, box.y, box.w - part, box.h},
+          "min",
+          shown.stop_min.view(),
+          "",
+          size,
+          label_size});
 }
 
 void draw_wrist(Painter& p, const Shown& s) {
@@ -151,9 +156,9 @@ void draw_mask(Painter& p, const Shown& s) {
           depth_tone(s)});
   p.ascent_bar({208.0, top + 8.0, 26.0, h - 16.0}, s, 13.0);
   draw_limit(p, {246.0, top, 156.0, h}, s, s.in_stops ? 36.0 : 46.0, 12.0);
-  p.cell({{408.0, top, 144.0, h}, "TIME", s.dive_time.view(), "", 28.0, 12.0});
-  p.cell({{556.0, top, 112.0, h}, "TO SURFACE", s.to_surface.view(), "min", 28.0, 12.0});
-  p.cell({{674.0, top, 118.0, h},
+  p.cell({{408.0, top, 118.0, h}, "TIME", s.dive_time.view(), "", 28.0, 12.0});
+  p.cell({{530.0, top, 116.0, h}, "TO SURFACE", s.to_surface.view(), "min", 28.0, 12.0});
+  p.cell({{650.0, top, 144.0, h},
           FixedText::of("TANK  {} min", s.gas_min.view()).view(),
           s.tank.view(),
           unit.pressure,

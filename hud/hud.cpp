@@ -30,11 +30,14 @@ void Hud::resize(std::uint32_t height_px) {
 void Hud::observe(const DiveData& data) {
   alarms_ = step_alarms(alarms_, data);
   minute_.add(data);
+  gas_left_.add(data);
 }
 
 bool Hud::update(const DiveData& data, const OperatorData& about) {
   observe(data);
-  const Shown next = shown_of(layout_.kind, units_, data, alarms_, minute_, about);
+  DiveData smooth = data;
+  smooth.gas_min = gas_left_.minutes(data);
+  const Shown next = shown_of(layout_.kind, units_, smooth, alarms_, minute_, about);
   if (drawn_ && next == shown_) return false;
   shown_ = next;
   drawn_ = true;

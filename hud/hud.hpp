@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "hud/draw.hpp"
+#include "hud/gas_left.hpp"
 
 namespace neritic::hud {
 
@@ -16,7 +17,7 @@ class Hud {
 
   // From the next update on the picture has this height; alarms and the last minute stay.
   void resize(std::uint32_t height_px);
-  // Alarms and the last minute go on, and nothing is drawn.
+  // Alarms, the last minute and the mean of the breathing go on, and nothing is drawn.
   void observe(const DiveData& data);
   // The same, and draws. Whether the picture changed.
   bool update(const DiveData& data, const OperatorData& about = {});
@@ -35,6 +36,7 @@ class Hud {
   double scale_;
   AlarmState alarms_;
   Minute minute_;
+  GasLeft gas_left_;
   Shown shown_;
   bool drawn_ = false;
   std::vector<TextMark> marks_;

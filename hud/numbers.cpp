@@ -13,6 +13,8 @@ constexpr double kLitresAPint = 0.473176473, kPound_kg = 0.45359237;
 // Rounding errors of summed steps are no reason to round away.
 constexpr double kDust = 1e-6;
 constexpr double kDeepest_m = 999.0, kMostMinutes = 999.0, kMostLeft_min = 99.0;
+constexpr double kMostHours = 999.0;
+constexpr int kHoursFrom_min = 1000;
 
 double down(double v) {
   return std::floor(v + kDust);
@@ -61,7 +63,8 @@ FixedText ceiling_text(double depth_m, Units units) {
 }
 
 FixedText stop_text(double depth_m, Units units) {
-  return whole_depth(depth_m, units, up);
+  // The depth goes to the nearest step, so that a text stands for half a step less.
+  return depth_with(depth_m, units, [](double v) { return v > 0.0 ? up(v + 0.5) : 0.0; });
 }
 
 FixedText limit_depth_text(double depth_m, Units units) {
@@ -75,13 +78,17 @@ FixedText minutes_left_text(double minutes) {
 }
 
 FixedText minutes_owed_text(double minutes) {
-  if (!(minutes >= 0.0 && minutes <= kMostMinutes)) return "--";
+  if (!(minutes >= 0.0)) return "--";
+  if (up(minutes) > kMostMinutes) return "999+";
   return FixedText::of("{:.0f}", up(minutes));
 }
 
 FixedText clock_text(double minutes) {
-  if (!(minutes >= 0.0 && minutes <= kMostMinutes)) return "--:--";
+  if (!(minutes >= 0.0 && std::isfinite(minutes))) return "--:--";
+  if (minutes >= kMostHours * 60.0) return "999h+";
   const auto seconds = static_cast<int>(down(60.0 * minutes));
+  if (seconds >= kHoursFrom_min * 60)
+    return FixedText::of("{}h{:02}", seconds / 3600, seconds / 60 % 60);
   return FixedText::of("{}:{:02}", seconds / 60, seconds % 60);
 }
 
@@ -100,12 +107,14 @@ FixedText pressure_text(double pa, Units units) {
 }
 
 FixedText oxygen_text(double bar) {
-  if (!(bar >= 0.0 && bar <= 9.99)) return "-.--";
+  if (!(bar >= 0.0 && std::isfinite(bar))) return "-.--";
+  if (up(100.0 * bar) > 999.0) return "9.9+";
   return FixedText::of("{:.2f}", 0.01 * up(100.0 * bar));
 }
 
 FixedText percent_text(double percent) {
-  if (!(percent >= 0.0 && percent <= 999.0)) return "--";
+  if (!(percent >= 0.0 && std::isfinite(percent))) return "--";
+  if (up(percent) > 999.0) return "999+";
   return FixedText::of("{:.0f}", up(percent));
 }
 

@@ -20,22 +20,23 @@ double standard_depth_m(double depth_m, double bar_per_m);
 FixedText depth_text(double depth_m, Units units);
 // The same, never shallower.
 FixedText ceiling_text(double depth_m, Units units);
-// Whole metres or feet, never shallower: a stop is named by the planner's own metres.
+// In the depth's steps: where the depth's text is this one, the diver is not shallower than the
+// stop.
 FixedText stop_text(double depth_m, Units units);
 // The deepest place for a gas: whole metres or feet, never deeper.
 FixedText limit_depth_text(double depth_m, Units units);
 // Whole minutes. Down: time that is left; up: time that is owed. No limit and more than the most
-// that is shown are "99+" for time that is left; time that is owed without end is dashes.
+// that is shown are "99+" for time that is left, "999+" for time that is owed.
 FixedText minutes_left_text(double minutes);
 FixedText minutes_owed_text(double minutes);
-// "34:07", down to the second.
+// "34:07", down to the second; from 1000 minutes on "17h05", down to the minute.
 FixedText clock_text(double minutes);
 // Metres or feet a minute, with its size never smaller than it is.
 FixedText rate_text(double m_min, Units units);
 // Down to a bar, or to 10 psi.
 FixedText pressure_text(double pa, Units units);
-FixedText oxygen_text(double bar);                  // "1.32", up
-FixedText percent_text(double percent);             // "14", up
+FixedText oxygen_text(double bar);                  // "1.32", up; "9.9+"
+FixedText percent_text(double percent);             // "14", up; "999+"
 FixedText heading_text(double rad);                 // "007"
 FixedText litres_text(double m3, Units units);      // "3.2" litres, or pints
 FixedText weight_text(double newton, Units units);  // "1.4" kg or lb, size only

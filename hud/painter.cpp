@@ -105,7 +105,10 @@ void Painter::cell(const Cell& c) {
   const bool alarmed = c.tone.level != AlarmLevel::kOff;
   const Color ink = ink_of(c.tone);
   if (alarmed) plate(c.box, 6.0, plate_of(c.tone));
-  text(c.box.x + kPad, c.box.y + kPad + c.label_size, c.label_size, c.label,
+  const double label_room = c.box.w - 2.0 * kPad,
+               label_w = width(c.label_size, c.label, Face::kRegular);
+  text(c.box.x + kPad, c.box.y + kPad + c.label_size,
+       label_w > label_room ? c.label_size * label_room / label_w : c.label_size, c.label,
        alarmed ? kBlack : kLabel);
   const double unit_size = std::max(c.label_size, 0.34 * c.size);
   const double unit_w = c.unit.empty() ? 0.0 : kUnitGap + width(unit_size, c.unit, Face::kRegular);
@@ -194,7 +197,7 @@ void Painter::alarm_band(const Box& box, const Shown& shown, double size) {
   }
   if (count == 0) return;
   const Tone tone{shown.alarms[first], shown.flash};
-  const AlarmWords words = words_of(static_cast<Alarm>(first), tone.level);
+  const AlarmWords words = words_of(static_cast<Alarm>(first), tone.level, shown.other_gas);
   plate(box, 8.0, plate_of(tone));
   const double mark = 0.32 * box.h, x = box.x + 12.0 + mark;
   triangle(x, box.y + 0.5 * box.h, mark, true, kBlack);

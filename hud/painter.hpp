@@ -53,7 +53,7 @@ class Painter {
               draw2d::Face face = draw2d::Face::kRegular);
   double width(double size, std::string_view utf8, draw2d::Face face);
 
-  // A label over a bold number with its unit; the number shrinks where the cell is too narrow.
+  // A label over a bold number with its unit; both shrink where the cell is too narrow.
   struct Cell {
     Box box;
     std::string_view label, value, unit;

@@ -42,10 +42,11 @@ FixedText mod_text(const DiveData& data, Units units) {
 void show_depths(const DiveData& d, Units units, Shown& out) {
   const auto standard = [&](double depth_m) { return standard_depth_m(depth_m, d.bar_per_m); };
   out.depth = depth_text(standard(d.depth_m), units);
-  out.deepest = depth_text(standard(d.deepest_m), units);
+  // Above the depth at which a dive begins the computer knows no deepest place yet.
+  out.deepest = depth_text(standard(std::max(d.deepest_m, d.depth_m)), units);
   out.in_stops = d.ceiling_m > 0.0;
   out.ceiling = ceiling_text(standard(d.ceiling_m), units);
-  out.stop = stop_text(d.stop_m, units);
+  out.stop = stop_text(standard(std::max(d.stop_m, d.ceiling_m)), units);
   out.stop_min = minutes_owed_text(d.stop_min);
   out.no_stop = minutes_left_text(d.no_stop_min);
   out.to_surface = minutes_owed_text(d.to_surface_min);
@@ -155,6 +156,7 @@ Shown shown_of(LayoutKind layout, Units units, const DiveData& data, const Alarm
   if (layout == LayoutKind::kMask) out.heading = heading_text(data.heading_rad);
   if (layout == LayoutKind::kConsole) show_operator(data, units, minute, about, out);
   out.alarms = alarms.level;
+  out.other_gas = data.other_gas && alarms.of(Alarm::kGas) == AlarmLevel::kDanger;
   const bool danger = std::ranges::any_of(
       alarms.level, [](AlarmLevel level) { return level == AlarmLevel::kDanger; });
   out.flash = (danger || out.condition.unconscious) && std::fmod(std::abs(data.time_s), 1.0) >= 0.5;

@@ -50,6 +50,7 @@ struct Shown {
   FixedText ascent, tank, gas_min, gas, mod, oxygen, cns, heading;
   FixedText jacket, lift, net, heart, breath;
   bool in_stops = false, sinks = false, net_known = false;
+  bool other_gas = false;  // while an alarm says that there is no gas
   // Begun steps of kAscentStep_m_min, up positive, at most kAscentSteps + 1; the bar's marks of the
   // two limits.
   int ascent_steps = 0, fast_steps = 3, dangerous_steps = 6;

@@ -43,6 +43,14 @@ void read_computer(const PhysicsHuman& human, const HumanPhysics& state, hud::Di
     out.tissues[i] = hud::tissue_bar(model, computer.tissues, i, ambient_bar);
 }
 
+// Whether a tank gives a full breath of a gas with enough oxygen here, and not too much.
+bool can_be_breathed(const diver::Body& body, const diver::HumanState& state, std::size_t tank) {
+  const double ambient_pa = diver::pressure_at(body, state.root.position_ned_m.z);
+  const double oxygen_bar = 1e-5 * ambient_pa * body.tanks[tank].mix.oxygen;
+  return oxygen_bar >= diver::kLeastOxygen_bar && oxygen_bar <= diver::kMostOxygen_bar &&
+         diver::tank_pressure(body, state.life.tanks, tank) >= ambient_pa + diver::kWeakTank_pa;
+}
+
 void read_gas(const PhysicsHuman& human, const HumanPhysics& state, hud::DiveData& out) {
   const diver::GasReading gas = diver::read_gas(human.body, state.human);
   const std::size_t tank = state.human.held.tank;
@@ -56,6 +64,8 @@ void read_gas(const PhysicsHuman& human, const HumanPhysics& state, hud::DiveDat
   out.tank_pa = gas.tank_pa;
   out.gas_min = gas.remaining_s / 60.0;
   out.out_of_gas = state.human.life.lungs.unfed_s > 0.0;
+  for (std::size_t i = 0; i < human.body.tank_count; ++i)
+    out.other_gas |= i != tank && can_be_breathed(human.body, state.human, i);
 }
 
 void read_body(const PhysicsHuman& human, const HumanPhysics& state, hud::DiveData& out) {

@@ -84,6 +84,20 @@ TEST(HudAlarms, GasIsLowWhereItDoesNotReachForTheAscentAndGoneWhereNothingComes)
   EXPECT_EQ(step_alarms({}, d).of(Alarm::kGas), AlarmLevel::kDanger);
 }
 
+TEST(HudAlarms, ADiverWithoutGasIsToldToChangeItOnlyWhereThereIsAnother) {
+  const std::string alone = words_of(Alarm::kGas, AlarmLevel::kDanger).act;
+  EXPECT_EQ(alone.find("CHANGE"), std::string::npos) << alone;
+  EXPECT_NE(alone.find("GO UP"), std::string::npos) << alone;
+  EXPECT_EQ(words_of(Alarm::kGas, AlarmLevel::kDanger, true).act, std::string("CHANGE GAS"));
+  DiveData d = alarmed_dive(Alarm::kGas, AlarmLevel::kDanger);
+  Hud hud(LayoutKind::kMask, Units::kMetric, 140);
+  hud.update(d);
+  const ImageU8 without = hud.picture();
+  d.other_gas = true;
+  EXPECT_TRUE(hud.update(d));
+  EXPECT_NE(without.data, hud.picture().data);
+}
+
 TEST(HudAlarms, WhatIsUnknownNeitherBeginsNorEndsAnAlarm) {
   for (std::size_t i = 0; i < kAlarms; ++i) {
     const auto alarm = static_cast<Alarm>(i);

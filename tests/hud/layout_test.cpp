@@ -49,9 +49,10 @@ OperatorData about() {
   return {.gaze = Vec2(0.47, 0.42), .streams = streams(), .has_sonar = true};
 }
 
-Hud hud_of(LayoutKind kind, const DiveData& data, double scale = 1.0) {
+Hud hud_of(LayoutKind kind, const DiveData& data, double scale = 1.0,
+           Units units = Units::kMetric) {
   const auto height = static_cast<std::uint32_t>(std::lround(scale * layout_of(kind).height_px));
-  Hud hud(kind, Units::kMetric, height);
+  Hud hud(kind, units, height);
   if (kind == LayoutKind::kConsole && std::isfinite(data.depth_m)) fill_minute(hud, data);
   hud.update(data, about());
   return hud;
@@ -115,10 +116,29 @@ TEST(HudLayout, DepthIsTheLargestNumber) {
   }
 }
 
+// The longest texts that numbers have.
+DiveData long_dive(bool in_stops) {
+  DiveData d = in_stops ? stops_dive() : calm_dive();
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  d.dive_min = 999.9, d.depth_m = d.deepest_m = 299.6, d.to_surface_min = kInf, d.gas_min = kInf;
+  d.stop_min = kInf, d.gas = {0.10, 0.70}, d.tank_pa = 299e5, d.cns_percent = 5000.0;
+  d.po2_bar = 12.0, d.ascent_m_min = 188.0;
+  if (in_stops)
+    d.ceiling_m = 118.3, d.stop_m = 120.0;
+  else
+    d.no_stop_min = kInf;
+  return d;
+}
+
 TEST(HudLayout, NoTextLeavesThePictureOrMeetsAnother) {
+  std::vector<NamedDive> dives = all_dives();
+  dives.push_back({"long", long_dive(false)});
+  dives.push_back({"long stops", long_dive(true)});
   for (const Layout& layout : layouts())
-    for (const NamedDive& dive : all_dives()) {
-      const Hud hud = hud_of(layout.kind, dive.data);
+    for (std::size_t of = 0; of < 2 * dives.size(); ++of) {
+      const NamedDive& dive = dives[of / 2];
+      const Hud hud =
+          hud_of(layout.kind, dive.data, 1.0, of % 2 == 0 ? Units::kMetric : Units::kImperial);
       const auto marks = hud.marks();
       for (std::size_t i = 0; i < marks.size(); ++i) {
         const Box& a = marks[i].box;

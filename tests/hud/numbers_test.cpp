@@ -43,8 +43,11 @@ TEST(HudNumbers, EachIsRoundedToTheSafeSideByLessThanAStep) {
     };
     down(value(minutes_left_text(v)), v, 1.0);
     up(value(minutes_owed_text(v)), v, 1.0);
-    up(value(stop_text(v, Units::kMetric)), v, 1.0);
-    up(value(stop_text(v, Units::kImperial)), v / 0.3048, 1.0);
+    // Of the depths that have this text too the shallowest is no shallower.
+    if (v > 0.0) up(value(stop_text(v, Units::kMetric)) - 0.05, v, 0.1 + 1e-9);
+    if (v > 0.0) up(value(stop_text(v, Units::kImperial)) - 0.5, v / 0.3048, 1.0);
+    EXPECT_GE(value(stop_text(v, Units::kMetric)), value(ceiling_text(v, Units::kMetric)));
+    EXPECT_GE(value(stop_text(v, Units::kImperial)), value(ceiling_text(v, Units::kImperial)));
     up(value(ceiling_text(v, Units::kMetric)), v, 0.1 + 1e-9);
     up(value(ceiling_text(v, Units::kImperial)), v / 0.3048, 1.0);
     down(value(limit_depth_text(v, Units::kMetric)), v, 1.0);
@@ -61,8 +64,8 @@ TEST(HudNumbers, EachIsRoundedToTheSafeSideByLessThanAStep) {
 TEST(HudNumbers, SumsOfStepsAreNoReasonToRoundAway) {
   EXPECT_EQ(minutes_left_text(12.0 - 1e-12).view(), "12");
   EXPECT_EQ(minutes_owed_text(3.0 + 1e-12).view(), "3");
-  EXPECT_EQ(stop_text(6.0 + 1e-12, Units::kMetric).view(), "6");
-  EXPECT_EQ(stop_text(6.0, Units::kImperial).view(), "20");
+  EXPECT_EQ(stop_text(5.95 + 1e-12, Units::kMetric).view(), "6.0");
+  EXPECT_EQ(stop_text(6.0, Units::kImperial).view(), "21");
   EXPECT_EQ(clock_text(34.0 + 7.0 / 60.0 - 1e-12).view(), "34:07");
 }
 
@@ -71,7 +74,7 @@ TEST(HudNumbers, WhatIsUnknownOrOutOfRangeIsDashes) {
     for (const double depth_m : {kNan, kInf, -kInf, -1.0, 1e4}) {
       EXPECT_EQ(depth_text(depth_m, units).view(), "--.-");
       EXPECT_EQ(ceiling_text(depth_m, units).view(), "--.-");
-      EXPECT_EQ(stop_text(depth_m, units).view(), "--");
+      EXPECT_EQ(stop_text(depth_m, units).view(), "--.-");
       EXPECT_EQ(limit_depth_text(depth_m, units).view(), "--");
     }
     EXPECT_EQ(pressure_text(kNan, units).view(), "---");
@@ -88,14 +91,80 @@ TEST(HudNumbers, WhatIsUnknownOrOutOfRangeIsDashes) {
     EXPECT_EQ(clock_text(minutes).view(), "--:--");
   }
   EXPECT_EQ(minutes_left_text(kInf).view(), "99+");
-  EXPECT_EQ(minutes_owed_text(kInf).view(), "--");
-  EXPECT_EQ(minutes_owed_text(1e12).view(), "--");
-  EXPECT_EQ(clock_text(1e12).view(), "--:--");
   EXPECT_EQ(oxygen_text(kNan).view(), "-.--");
-  EXPECT_EQ(oxygen_text(31.0).view(), "-.--");
   EXPECT_EQ(percent_text(kNan).view(), "--");
   EXPECT_EQ(heading_text(kInf).view(), "---");
   EXPECT_EQ(beats_text(kNan).view(), "--");
+}
+
+TEST(HudNumbers, NoObligationAndNoDoseVanishesWhereItIsBeyondWhatIsShown) {
+  EXPECT_EQ(minutes_owed_text(999.0).view(), "999");
+  for (const double minutes : {999.1, 1e12, kInf})
+    EXPECT_EQ(minutes_owed_text(minutes).view(), "999+");
+  EXPECT_EQ(clock_text(999.99).view(), "999:59");
+  EXPECT_EQ(clock_text(1000.0).view(), "16h40");
+  EXPECT_EQ(clock_text(1025.9).view(), "17h05");
+  EXPECT_EQ(clock_text(1e12).view(), "999h+");
+  EXPECT_EQ(clock_text(kInf).view(), "--:--");
+  EXPECT_EQ(oxygen_text(9.99).view(), "9.99");
+  EXPECT_EQ(oxygen_text(31.0).view(), "9.9+");
+  EXPECT_EQ(percent_text(999.0).view(), "999");
+  EXPECT_EQ(percent_text(1e6).view(), "999+");
+}
+
+// A diver in sea water: all depths on one scale, that of the gauge.
+TEST(HudNumbers, TheStopIsOnTheDepthsScaleAndNeverAboveTheCeiling) {
+  DiveData d = stops_dive();
+  d.stop_m = 3.0, d.ceiling_m = 2.99;
+  for (const Units units : {Units::kMetric, Units::kImperial})
+    for (double depth_m = 2.5; depth_m < 3.5; depth_m += 0.001) {
+      d.depth_m = depth_m;
+      const Shown shown = shown_of(LayoutKind::kCorner, units, d, {}, {}, {});
+      if (shown.depth == shown.stop) {
+        EXPECT_GE(depth_m, d.stop_m) << shown.depth.view();
+      }
+      EXPECT_GE(std::stod(std::string(shown.stop.view())),
+                std::stod(std::string(shown.ceiling.view())));
+    }
+  d.ceiling_m = 4.0;  // while the plan for the stop is older
+  const Shown shown = shown_of(LayoutKind::kCorner, Units::kMetric, d, {}, {}, {});
+  EXPECT_GE(std::stod(std::string(shown.stop.view())),
+            std::stod(std::string(shown.ceiling.view())));
+}
+
+TEST(HudNumbers, TheDeepestPlaceIsNeverAboveTheDepth) {
+  DiveData d = calm_dive();
+  d.depth_m = 0.3, d.deepest_m = 0.0;  // the dive has not begun
+  const Shown shown = shown_of(LayoutKind::kWrist, Units::kMetric, d, {}, {}, {});
+  EXPECT_EQ(shown.deepest.view(), "0.3");
+}
+
+// A tank of 150 bar over the reserve, breathed in breaths of different size at rest.
+TEST(HudNumbers, TheGasLastsByTheBreathingOfAMinuteNotByABreath) {
+  Hud hud(LayoutKind::kCorner, Units::kMetric, 75);
+  DiveData d = calm_dive();
+  double least = 1e9, most = 0.0, left_min = 58.0;
+  for (int i = 0; i < 5 * 60 * 5; ++i) {  // five minutes, five times a second
+    d.time_s = 0.2 * i;
+    left_min -= 0.2 / 60.0;
+    d.tank_pa = (50.0 + 150.0 * left_min / 58.0) * 1e5;
+    const double breath = 0.1 * std::sin(1.3 * std::floor(d.time_s / 4.0));
+    d.gas_min = left_min / (1.0 + breath);
+    hud.update(d);
+    if (d.time_s < 180.0) continue;  // two minutes follow
+    const double off = std::stod(std::string(hud.shown().gas_min.view())) - left_min;
+    least = std::min(least, off), most = std::max(most, off);
+  }
+  EXPECT_GT(least, -2.5);
+  EXPECT_LT(most, 1.0);
+  // At twice the pressure it lasts half as long at once, and nothing is nothing at once.
+  const double before = std::stod(std::string(hud.shown().gas_min.view()));
+  d.depth_m = 2.0 * d.depth_m + d.surface_bar / d.bar_per_m, d.gas_min *= 0.5, d.time_s += 0.2;
+  hud.update(d);
+  EXPECT_NEAR(std::stod(std::string(hud.shown().gas_min.view())), 0.5 * before, 1.0);
+  d.gas_min = 0.0, d.time_s += 0.2;
+  hud.update(d);
+  EXPECT_EQ(hud.shown().gas_min.view(), "0");
 }
 
 TEST(HudNumbers, HeadingIsThreeDigitsBelow360) {
@@ -117,7 +186,7 @@ TEST(HudNumbers, AnExtremeStateShowsDashesAndAnEmptyTankZero) {
   EXPECT_EQ(shown.to_surface.view(), "--");
   EXPECT_EQ(shown.heading.view(), "---");
   EXPECT_EQ(shown.heading_deg, -1);
-  EXPECT_EQ(shown.dive_time.view(), "--:--");
+  EXPECT_EQ(shown.dive_time.view(), "999h+");
   EXPECT_EQ(shown.tank.view(), "0");
   EXPECT_EQ(shown.gas_min.view(), "0");
 }

@@ -15,9 +15,11 @@ namespace {
 
 constexpr std::uint32_t kWidth = 640, kHeight = 480;
 
-std::unique_ptr<LivePhysics> diver_physics(const std::string& keys = "") {
+std::unique_ptr<LivePhysics> diver_physics(const std::string& keys = "",
+                                           const std::string& human = "") {
   const scene::Scene scene =
-      load_text(kStillWater + diver_text("position_m = [0, -12, 0]\n" + std::string(kProne) + keys))
+      load_text(kStillWater +
+                diver_text("position_m = [0, -12, 0]\n" + std::string(kProne) + keys, human))
           .value();
   auto physics = LivePhysics::create(scene, LivePhysics::Pace::kPicture).value();
   physics->start();
@@ -62,6 +64,21 @@ TEST(InstrumentData, TheConditionIsThatOfEffectsThatTheSceneNames) {
   EXPECT_TRUE(std::isnan(data.saturation) && std::isnan(data.co2_mmhg));
   EXPECT_TRUE(std::isnan(data.oxygen_dose));
   EXPECT_FALSE(data.unconscious);
+}
+
+TEST(InstrumentData, AnotherTankIsToldOnlyWhereItsGasCanBeBreathed) {
+  const test::ScratchFolder folder;
+  const std::string file = (folder / "human.toml").string();
+  for (const auto& [tanks, wanted] : {std::pair("[ {} ]", false),
+                                      {"[ {}, { oxygen = 0.32 } ]", true},
+                                      {"[ {}, { oxygen = 1.0 } ]", false},  // 2.2 bar at 12 m
+                                      {"[ {}, { oxygen = 0.05, helium = 0.8 } ]", false},
+                                      {"[ {}, { pressure_bar = 3 } ]", false}}) {
+    ASSERT_TRUE(write_text(file, fmt::format("tanks = {}\n", tanks)).ok());
+    const auto physics = diver_physics("", file);
+    const hud::DiveData data = instrument_data(physics->world(), 0, physics->shown_snapshot());
+    EXPECT_EQ(data.other_gas, wanted) << tanks;
+  }
 }
 
 // From the axes: the head's way while the diver lies, the belly's while the diver stands.
