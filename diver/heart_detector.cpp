@@ -16,6 +16,9 @@ namespace {
 constexpr double kMostPlaces_hz = 500.0;
 constexpr double kWindow_s = 0.150, kRefractory_s = 0.200, kGuard_s = 0.100, kTWave_s = 0.360;
 constexpr double kLearn_s = 2.0, kMemory_s = 8.0, kLookBack = 1.66;
+// Between two beats so near (100 a minute) a peak of noise has hardly room: their windows and
+// guards take most of it.
+constexpr double kNoRoom_s = 0.6;
 // Half a second of missing samples is no jitter of a radio any more.
 constexpr double kLost_s = 0.5;
 // The heart stops for no longer (30 beats a minute are 2 s): the levels are wrong, as after a
@@ -169,6 +172,7 @@ void BeatDetector::learn(std::int64_t from, std::int64_t to) {
   learnt_ = most > 0.0;
   last_look_ = to;
   passed_count_ = 0;
+  noise_heard_ = false;
 }
 
 void BeatDetector::settle(std::int64_t at, std::vector<Beat>& out) {
@@ -206,6 +210,7 @@ void BeatDetector::judge(const Peak& found, std::vector<Beat>& out) {
                       peak.slope < 0.5 * last_beat_->slope;
   if (peak.energy > threshold() && !t_wave) return accept(peak, 0.125, out);
   noise_level_ = 0.125 * peak.energy + 0.875 * noise_level_;
+  noise_heard_ = true;
   if (t_wave) return;
   if (passed_count_ == static_cast<int>(passed_.size())) {
     std::ranges::move(passed_.begin() + 1, passed_.end(), passed_.begin());
@@ -224,6 +229,14 @@ void BeatDetector::look_back(std::int64_t at, std::vector<Beat>& out) {
     if (p.energy > 0.5 * threshold() && (!best || p.energy > best->energy)) best = &p;
   }
   if (best) accept(*best, 0.25, out);
+}
+
+double BeatDetector::quietest_since_last_beat(std::int64_t at) const {
+  double least = place(at).energy;
+  for (std::int64_t i = std::max(last_beat_->at, at - static_cast<std::int64_t>(mask_)); i < at;
+       ++i)
+    least = std::min(least, place(i).energy);
+  return least;
 }
 
 double BeatDetector::mean_interval() const {
@@ -248,6 +261,10 @@ void BeatDetector::accept(const Peak& found, double share, std::vector<Beat>& ou
   const Peak peak = found;  // which may lie among those that are dropped here
   signal_level_ = share * peak.energy + (1.0 - share) * signal_level_;
   if (last_beat_) {
+    // Beats that follow each other closely leave no room for a peak of noise: the noise is then
+    // what is left between them.
+    if (!noise_heard_ && static_cast<double>(peak.at - last_beat_->at) < kNoRoom_s * place_hz_)
+      noise_level_ = 0.125 * quietest_since_last_beat(peak.at) + 0.875 * noise_level_;
     const double interval = static_cast<double>(peak.at - last_beat_->at);
     if (interval > kLeastInterval_s * place_hz_ && interval < kMostInterval_s * place_hz_) {
       if (interval_count_ == static_cast<int>(intervals_.size()))
@@ -263,6 +280,7 @@ void BeatDetector::accept(const Peak& found, double share, std::vector<Beat>& ou
       passed_[static_cast<std::size_t>(kept++)] = passed_[static_cast<std::size_t>(i)];
   passed_count_ = kept;
   last_beat_ = peak;
+  noise_heard_ = false;
   last_look_ = peak.at;
   peakedness_ = band_kurtosis();
   out.push_back(locate(peak));

@@ -80,6 +80,7 @@ class BeatDetector {
   Beat locate(const Peak& peak) const;
   void lose_signal();
   double threshold() const { return noise_level_ + 0.25 * (signal_level_ - noise_level_); }
+  double quietest_since_last_beat(std::int64_t at) const;
   double mean_interval() const;  // in places
 
   double rate_hz_;
@@ -105,6 +106,7 @@ class BeatDetector {
 
   bool learnt_ = false, after_gap_ = true;
   double signal_level_ = 0.0, noise_level_ = 0.0;
+  bool noise_heard_ = false;  // a peak since the last beat was noise
   std::optional<Peak> last_beat_;
   std::int64_t last_look_ = 0;  // since when there was no beat: the beat, or when learning ended
   std::array<double, 8> intervals_{};  // the last beats', in places

@@ -50,6 +50,33 @@ TEST(HeartRate, FromThirtyToTwoHundredBeatsAMinute) {
   }
 }
 
+// Beats in quick succession leave no peak of noise between them: that is no noise.
+TEST(HeartRate, AFastHeartIsAGoodSignalFromTheFirstSeconds) {
+  for (const double rate_hz : {130.16, 250.0})
+    for (const double noise : {0.0, 0.005, 0.05, 0.1})
+      for (const double bpm :
+           {30.0, 60.0, 100.0, 140.0, 160.0, 180.0, 190.0, 200.0, 210.0, 220.0}) {
+        SCOPED_TRACE(fmt::format("{} a minute at {} Hz, noise {}", bpm, rate_hz, noise));
+        std::vector<double> ecg = test::ecg_of(test::even_beats(60.0 / bpm, 30.0), rate_hz, 30.0);
+        for (std::size_t i = 0; i < ecg.size(); ++i) ecg[i] += noise * test::gauss(RandomKey{9}, i);
+        HeartMonitor monitor(rate_hz);
+        std::size_t unknown = 0;
+        for (std::size_t i = 0; i < ecg.size(); ++i) {
+          monitor.push({&ecg[i], 1});
+          if (i % 50 != 0 || i < 200) continue;
+          const double found_bpm = monitor.state().rate_bpm;
+          if (found_bpm > 0.0) {
+            ASSERT_NEAR(found_bpm, bpm, 0.03 * bpm) << i;
+          } else if (static_cast<double>(i) > 4.0 * rate_hz) {
+            ++unknown;
+          }
+        }
+        EXPECT_LE(unknown, 2u);
+        EXPECT_EQ(monitor.state().quality, SignalQuality::kGood);
+        EXPECT_LT(monitor.doubtful_share(), 0.1);
+      }
+}
+
 TEST(HeartExtremes, ZerosAndAnAmplifierAtItsLimitAreNoHeart) {
   for (const double level : {0.0, 5.0, -2047.0, 1e6, 0.1}) {
     const HeartState s = monitored(360.0, std::vector<double>(360 * 60, level));
