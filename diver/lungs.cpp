@@ -60,15 +60,11 @@ double middle_of_quiet_breath(const Body& body) {
   return body.lungs.rest_m3 + 0.5 * tidal_volume(body, kEquivalent * kRestingOxygen_l_min);
 }
 
-void step_lungs(const Body& body, LungState& lungs, TankState& tanks, const BreathInputs& in,
-                double ambient_pa, double dt_s, BorrowedTank* borrowed) {
-  lungs.oxygen_l_min +=
-      (in.oxygen_demand_l_min - lungs.oxygen_l_min) * -std::expm1(-dt_s / kOxygenLag_s);
-  if (in.hold) {
-    hold_breath(body, lungs, ambient_pa, dt_s);
-    return;
-  }
-  lungs.held_moles = 0.0;
+namespace {
+
+// Volumes at the ambient pressure of now.
+void breathe(const Body& body, LungState& lungs, TankState& tanks, const BreathInputs& in,
+             double ambient_pa, double dt_s, BorrowedTank* borrowed) {
   const GasMix mix = borrowed                    ? borrowed->place.mix
                      : in.tank < body.tank_count ? body.tanks[in.tank].mix
                                                  : kAir;
@@ -107,6 +103,23 @@ void step_lungs(const Body& body, LungState& lungs, TankState& tanks, const Brea
   lungs.volume_m3 += given * kAirHeat / ambient_pa;
   lungs.breathed_moles += given;
   count_fed(lungs, given >= 0.5 * moles, dt_s);
+}
+
+}  // namespace
+
+void step_lungs(const Body& body, LungState& lungs, TankState& tanks, const BreathInputs& in,
+                double ambient_pa, double dt_s, BorrowedTank* borrowed) {
+  lungs.oxygen_l_min +=
+      (in.oxygen_demand_l_min - lungs.oxygen_l_min) * -std::expm1(-dt_s / kOxygenLag_s);
+  if (in.hold) {
+    hold_breath(body, lungs, ambient_pa, dt_s);
+    return;
+  }
+  // Gas that is not renewed follows Boyle's law; what the lungs cannot hold leaves by the mouth.
+  if (lungs.held_moles > 0.0)
+    lungs.volume_m3 = std::min(lungs.held_moles * kAirHeat / ambient_pa, body.lungs.total_m3);
+  breathe(body, lungs, tanks, in, ambient_pa, dt_s, borrowed);
+  lungs.held_moles = lungs.unfed_s > 0.0 ? lungs.volume_m3 * ambient_pa / kAirHeat : 0.0;
 }
 
 double remaining_s(const Body& body, const TankState& tanks, std::size_t tank,

@@ -11,7 +11,7 @@ namespace neritic::diver {
 
 struct LungState {
   double volume_m3 = 2.5e-3;   // of gas
-  double held_moles = 0.0;     // while the breath is held
+  double held_moles = 0.0;     // while the breath is held, or nothing comes to breathe
   double phase_rad = 0.0;      // 0: empty of the tidal volume; breathing in to pi, out to 2 pi
   double oxygen_l_min = 0.32;  // uptake, at standard temperature and pressure, dry
   // Seconds in which the lungs were stretched beyond what they bear, a breath held on ascent: a

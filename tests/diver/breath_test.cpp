@@ -157,6 +157,35 @@ TEST(Breath, AnEmptyTankGivesNothingAndIsNoticed) {
   EXPECT_EQ(remaining_s(body, m.tanks, 0, 20.0, ambient_pa(20.0), 50e5), 0.0);
 }
 
+// Without gas to breathe the lungs are left with what they hold.
+TEST(Breath, LungsWithoutGasFollowBoylesLawAndBreatheOutWhatTheyCannotHold) {
+  for (const bool tanks_worn : {true, false}) {
+    Gear gear;
+    if (tanks_worn)
+      gear.tanks[0].pressure_pa = 0.0;
+    else
+      gear.tanks.clear();
+    const Body body = body_with(gear);
+    LungState lungs;
+    TankState tanks = full_tanks(body);
+    const auto at = [&](double depth_m, double dt_s) {
+      step_lungs(body, lungs, tanks, {}, ambient_pa(depth_m), dt_s);
+      return lungs.volume_m3;
+    };
+    while (lungs.unfed_s < 20.0) at(30.0, 0.05);  // breathed out, and nothing came
+    const double deep_m3 = at(30.0, 1e-6), sunk_m3 = at(60.0, 1e-6);
+    EXPECT_NEAR(sunk_m3 * ambient_pa(60.0), deep_m3 * ambient_pa(30.0),
+                1e-4 * deep_m3 * ambient_pa(30.0));
+    EXPECT_NEAR(at(30.0, 1e-6), deep_m3, 1e-4 * deep_m3);
+    // Risen at once, faster than breath flows: no more than the lungs hold, and that under no
+    // pressure.
+    EXPECT_NEAR(at(0.5, 1e-6), body.lungs.total_m3, 1e-7);
+    EXPECT_EQ(lungs.overstretched_s, 0.0);
+    EXPECT_LT(lungs.held_moles * kGasConstant * kTankTemperature_k,
+              1.001 * body.lungs.total_m3 * ambient_pa(0.5));
+  }
+}
+
 // A full breath asks for 5 bar over the water; and the water is less on a lake in the mountains.
 TEST(Breath, WhichTanksAreEmptyIsSaid) {
   Gear gear;
