@@ -327,7 +327,8 @@ class BodyMaker {
       excess_kg += kg, moment_kg_m += kg * at_m, aside_kg_m += kg * aside_m;
     }
   };
-  Balance balance_at(double depth_m, double tank_pa) const {
+  // tank_pa: none, as at the start.
+  Balance balance_at(double depth_m, std::optional<double> tank_pa) const {
     Balance out;
     for (std::size_t i = 0; i < kSegments; ++i) {
       const Vec3 centre = origin_of(i) + body_.segments[i].mass_centre_m;
@@ -346,7 +347,8 @@ class BodyMaker {
             0.0);
     for (std::size_t i = 0; i < body_.tank_count; ++i) {
       const TankPlace& tank = body_.tanks[i];
-      out.add(moles_in(tank.mix, tank.water_volume_m3, tank_pa) * molar_mass(tank.mix),
+      const double pa = tank_pa.value_or(tank.start_pa);
+      out.add(moles_in(tank.mix, tank.water_volume_m3, pa) * molar_mass(tank.mix),
               thorax_m + tank.position_m.x, tank.position_m.y);
     }
     return out;
@@ -354,7 +356,9 @@ class BodyMaker {
 
   void add_lead() {
     const double sinks = 1.0 - in_.water_kg_m3 / kLead_kg_m3;
-    const Balance neutral = balance_at(kNeutralDepth_m, kNeutralTank_pa);
+    // Without a jacket nothing lifts what the gas of full tanks weighs.
+    const Balance neutral = in_.gear.jacket ? balance_at(kNeutralDepth_m, kNeutralTank_pa)
+                                            : balance_at(in_.start_depth_m, std::nullopt);
     body_.lead_kg = in_.gear.lead_kg.value_or(std::max(0.0, -neutral.excess_kg / sinks));
     if (body_.lead_kg <= 0.0) return;
     const double thorax_m = origin_of(kThorax).x;
@@ -428,9 +432,10 @@ class BodyMaker {
 
 Result<Body> make_body(const BodyParameters& parameters) {
   NERITIC_TRY(const auto measures, measure_segments(parameters.build));
-  NERITIC_TRY_STATUS(check_limits(
-      {{"water density", parameters.water_kg_m3, 0.0, 1300.0},
-       {"strips a segment", static_cast<double>(parameters.strips_a_segment), 1, 64}}));
+  NERITIC_TRY_STATUS(
+      check_limits({{"water density", parameters.water_kg_m3, 0.0, 1300.0},
+                    {"strips a segment", static_cast<double>(parameters.strips_a_segment), 1, 64},
+                    {"depth of the start", parameters.start_depth_m, 0.0, 1e9}}));
   NERITIC_TRY_STATUS(check_limits({{"pressure at the surface", parameters.surface_pa, 2e4, 5e5}}));
   NERITIC_TRY_STATUS(check_fitness(parameters.fitness));
   NERITIC_TRY_STATUS(check_gear(parameters.gear));

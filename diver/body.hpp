@@ -34,6 +34,7 @@ struct BodyParameters {
   int strips_a_segment = 6;  // 1 to 64; `neritic tradeoff swim`
   double water_kg_m3 = kSeaWater_kg_m3;
   double surface_pa = kSurfacePressure_pa;  // of the air over it
+  double start_depth_m = 5.0;  // where a diver without a jacket is neutral with the default lead
 };
 
 // A piece of the body that water flows past: straight, of one section along its length, cut into

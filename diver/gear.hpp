@@ -73,7 +73,8 @@ struct Gear {
   std::vector<Tank> tanks = std::vector<Tank>(1);
   std::optional<Jacket> jacket = Jacket{};
   // Lead; nothing said: as much as makes the diver neutral with an empty jacket, lungs half full of
-  // a quiet breath, and 50 bar in the tanks, at 5 m (0 where that floats no one), split between
+  // a quiet breath, and 50 bar in the tanks, at 5 m (0 where that floats no one); without a jacket,
+  // with the tanks as they are at the start, at the depth where the dive starts; split between
   // belt and shoulders so that the body lies level at 15 m with 120 bar, and to that side which
   // balances tanks that hang at the other.
   std::optional<double> lead_kg;

@@ -98,6 +98,8 @@ Result<PhysicsHuman> physics_human(const scene::Scene& scene, std::size_t index)
   NERITIC_TRY(human.file,
               diver::read_diver(object.human->file, scene.physics->water_kg_m3,
                                 1e5 * diver::surface_bar_at(scene.physics->altitude_m)));
+  const Pose at = scene.world_from(object.mount, 0.0);
+  human.file.parameters.start_depth_m = std::clamp(ned_from_world(at.position_m).z, 0.0, 1e9);
   NERITIC_TRY(human.body, diver::make_body(human.file.parameters));
   if (scene.water) human.body.column = scene.water->column;
   NERITIC_TRY(diver::DiveComputer computer, diver::DiveComputer::create(human.file.computer));
@@ -131,7 +133,6 @@ Result<PhysicsHuman> physics_human(const scene::Scene& scene, std::size_t index)
   }
   set_shape(human);
   NERITIC_TRY_STATUS(find_nodes(scene, object, human));
-  const Pose at = scene.world_from(object.mount, 0.0);
   human.start.human = diver::start_at(
       human.body, ned_from_world(at.position_m), diver::ned_from_standing(at.rotation),
       human.recording ? human.recording->joints.front()
