@@ -40,6 +40,9 @@ void step_oxygen(const ConditionSettings& settings, const HypoxiaInputs& breath,
   }
 }
 
+// As good as none: so little of a joint's way is less than limbs feel.
+constexpr double kHardlySlack = 1e-6;
+
 }  // namespace
 
 const char* name_of_effect(std::size_t bit) {
@@ -72,6 +75,10 @@ double cold_slowing(double core_c) {
 
 double hypoxia_slowing(double saturation) {
   return 2.0 * std::clamp(0.82 - saturation, 0.0, 0.82);
+}
+
+double slack_share(double dt_s) {
+  return -std::expm1(-dt_s / kSlackLag_s);
 }
 
 ConditionState rested(const ConditionSettings& settings, const ConditionInputs& in) {
@@ -122,6 +129,8 @@ void step_condition(const ConditionSettings& settings, const ConditionInputs& in
   state.slowing = slowing;
   state.strength = std::clamp(strength, kLeastStrength, 1.0);
   state.lost = lost;
+  state.slack += ((lost != 0 ? 1.0 : 0.0) - state.slack) * slack_share(dt_s);
+  if (lost == 0 && state.slack < kHardlySlack) state.slack = 0.0;
   if (lost != 0) state.lost_s += dt_s;
 }
 

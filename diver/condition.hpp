@@ -42,6 +42,7 @@ struct ConditionState {
   double convulses_s = 0.0;  // more to go
   double slowing = 1.0;      // of reactions and decisions: times as long as when rested
   double strength = 1.0;     // share of the work that the diver can do
+  double slack = 0.0;        // of the muscles: 0 they hold the limbs, 1 they hang
   std::uint64_t lost = 0;    // bits of what takes consciousness away now; 0: conscious
   double lost_s = 0.0;       // altogether
 
@@ -54,6 +55,7 @@ struct ConditionState {
     field("convulses_s", self.convulses_s);
     field("slowing", self.slowing);
     field("strength", self.strength);
+    field("slack", self.slack);
     field("lost", self.lost);
     field("lost_s", self.lost_s);
   }
@@ -76,6 +78,11 @@ double narcosis_slowing(double narcotic_depth_m);
 double co2_slowing(double co2_mmhg);
 double cold_slowing(double core_c);
 double hypoxia_slowing(double saturation);
+
+// Muscles go slack, and take hold again, with this lag: 94 % of the way in 2 s (an assumption).
+inline constexpr double kSlackLag_s = 0.7;
+// The share of the way in a step.
+double slack_share(double dt_s);
 
 // The start of a dive: rested, warm, breathing so.
 ConditionState rested(const ConditionSettings& settings, const ConditionInputs& inputs);

@@ -136,8 +136,8 @@ void start_condition(const PhysicsHuman& human, PhysicsState& state, const Human
 Ability ability_of(const PhysicsHuman& human, const PhysicsState& before) {
   if (!human.condition || !human.condition->acts) return {};
   const diver::ConditionState& state = before.conditions()[human.condition->place];
-  return {state.lost == 0, diver::holds_breath(state), state.slowing, state.strength,
-          state.cold.shiver_w};
+  return {state.lost == 0, diver::holds_breath(state), state.slowing,
+          state.strength,  state.cold.shiver_w,        state.slack};
 }
 
 std::optional<diver::BorrowedTank> borrow(std::span<const PhysicsHuman> humans, std::size_t index,

@@ -124,6 +124,16 @@ diver::GazeState gaze_ned(const Gaze& gaze) {
   return state;
 }
 
+// Where slack muscles let limbs go: straight.
+void relax(double share, diver::JointRotations& joints) {
+  constexpr double kThere = 1e-9;
+  for (Quat& q : joints) {
+    const Quat straight(q.w < 0.0 ? -1.0 : 1.0, 0.0, 0.0, 0.0);
+    q = glm::normalize(q + share * (straight - q));
+    if (glm::length(Vec3(q.x, q.y, q.z)) < kThere) q = Quat(1.0, 0.0, 0.0, 0.0);
+  }
+}
+
 // The swimmer, a recording, or the limbs' posture as it is.
 void move_body(const PhysicsHuman& human, const DiverInputs& inputs, Authority authority,
                double now_s, double dt_s, const Ability& able, HumanPhysics& state,
@@ -136,11 +146,14 @@ void move_body(const PhysicsHuman& human, const DiverInputs& inputs, Authority a
   } else if (authority == Authority::kNobody) {
     acting.joints = state.human.held.joints;
   } else if (!able.conscious) {
-    state.swimmer = {};  // limp: limbs straight, no button, breath by itself
+    state.swimmer = {};  // limp: no button, breath by itself, limbs from where they are
+    acting.joints = state.human.held.joints;
+    relax(diver::slack_share(dt_s), acting.joints);
   } else {
     diver::SwimGoal goal = swim_goal(human, state);
     goal.speed_m_s *= able.strength;
     diver::swim(human.body, human.file.swimmer, goal, state.human, state.swimmer, dt_s, acting);
+    if (able.slack > 0.0) relax(able.slack, acting.joints);
   }
 }
 

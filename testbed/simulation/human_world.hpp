@@ -46,8 +46,8 @@ struct PhysicsRegulator {
 struct Ability {
   bool conscious = true, holds_breath = false;
   double slowing = 1.0, strength = 1.0;
-  double shiver_w = 0.0;
-  std::optional<Vec3> hand_to_m;  // where the right one reaches, in the world
+  double shiver_w = 0.0, slack = 0.0;  // slack: ConditionState
+  std::optional<Vec3> hand_to_m;       // where the right one reaches, in the world
 };
 
 // A diver of the scene, prepared.

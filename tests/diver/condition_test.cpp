@@ -177,6 +177,29 @@ TEST(Condition, AConvulsionHoldsTheBreathAndPasses) {
   EXPECT_EQ(state.lost, 0u);
 }
 
+// Muscles let go, and take hold again, over two seconds.
+TEST(Condition, MusclesGoSlackByAndBy) {
+  ConditionState state;
+  ConditionInputs in;
+  const ConditionSettings settings{.effects = kCarbonDioxide};
+  state.co2_dose = 1.0, in.co2_mmhg = 100.0;
+  double last = 0.0, most = 0.0;
+  for (int i = 0; i < 120; ++i) {
+    step_condition(settings, in, 1.0 / 60.0, state);
+    most = std::max(most, state.slack - last);
+    last = state.slack;
+  }
+  ASSERT_EQ(state.lost, kCarbonDioxide);
+  EXPECT_NEAR(state.slack, 1.0 - std::exp(-2.0 / kSlackLag_s), 1e-9);
+  EXPECT_LT(most, 0.03);
+  state.co2_dose = 0.0, in.co2_mmhg = 40.0;
+  step_condition(settings, in, 1.0 / 60.0, state);
+  ASSERT_EQ(state.lost, 0u);
+  EXPECT_GT(state.slack, 0.9);
+  for (int i = 0; i < 60 * 20; ++i) step_condition(settings, in, 1.0 / 60.0, state);
+  EXPECT_EQ(state.slack, 0.0);
+}
+
 TEST(Condition, SlowingIsThatOfThePublishedExperiments) {
   EXPECT_NEAR(narcosis_slowing(30.0), 0.209, 1e-12);
   EXPECT_EQ(co2_slowing(45.0), 0.0);

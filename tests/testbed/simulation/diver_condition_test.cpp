@@ -77,6 +77,52 @@ TEST(SceneCondition, AGasWithoutOxygenEndsTheSwim) {
             unaware.state().humans()[0].human.root.position_ned_m.x - 5.0);
 }
 
+// Who faints in the middle of a kick goes limp from there, and does no work by it; the state of
+// that moment goes on alike elsewhere.
+TEST(SceneCondition, WhoFaintsGoesLimpByAndBy) {
+  Files files;
+  const std::string thin = files.file(
+      "thin.toml", "tanks = [ { oxygen = 0.03, helium = 0.5 } ]\ngas_switches = false\n");
+  const std::string text =
+      kStillWater + diver_text(std::string(kProne) +
+                                   "position_m = [0, -3, 0]\nswim = { speed_m_s = 0.4, "
+                                   "waypoints_m = [[0, -3, -200]] }\n"
+                                   "condition = { effects = [\"hypoxia\"] }\n",
+                               thin);
+  TestDive dive = dive_of(text);
+  while (dive.state().conditions()[0].lost == 0 && dive.time_s() < 100.0) dive.run(1.0 / 240.0);
+  ASSERT_NE(dive.state().conditions()[0].lost, 0u);
+  const auto before = dive.state().humans()[0].human.limbs.rotation;
+  double bent_rad = 0.0;
+  for (const Quat& q : before)
+    bent_rad = std::max(bent_rad, 2.0 * std::acos(std::min(std::abs(q.w), 1.0)));
+  ASSERT_GT(bent_rad, 0.2);
+  const double work_j = dive.state().humans()[0].human.life.limb_work_j;
+  const Vec3 at = dive.state().humans()[0].human.root.velocity.linear();
+  double fastest_rad_s = 0.0, fastest_m_s = 0.0;
+  const auto see = [&] {
+    const diver::HumanState& human = dive.state().humans()[0].human;
+    for (const Vec3& rate : human.limbs.rate)
+      fastest_rad_s = std::max(fastest_rad_s, glm::length(rate));
+    fastest_m_s = std::max(fastest_m_s, glm::length(human.root.velocity.linear()));
+  };
+  dive.run(0.3);  // what the kick was about
+  const auto bytes = encode_state(dive.world->state_format(),
+                                  saved_state(*dive.simulation, dive.world->state_format()));
+  dive.run(3.0, see);
+  EXPECT_LT(fastest_rad_s, radians(60.0));
+  EXPECT_LT(fastest_m_s, glm::length(at) + 0.1);
+  EXPECT_LT(dive.state().humans()[0].human.life.limb_work_j - work_j, 15.0);
+  for (const Quat& q : dive.state().humans()[0].human.limbs.rotation)
+    EXPECT_GT(std::abs(q.w), std::cos(radians(2.0)));
+  const auto saved = parse_state(dive.world->state_format(), bytes, "fainting");
+  ASSERT_TRUE(saved.ok()) << saved.error().message;
+  TestDive other = dive_of(text);
+  restore_state(*other.simulation, *saved);
+  other.run(3.0);
+  EXPECT_EQ(dive.simulation->newest().hash, other.simulation->newest().hash);
+}
+
 TEST(SceneCondition, IsSavedSampledAndTheSameOnAnyNumberOfThreads) {
   const std::string text =
       kStillWater +
