@@ -126,10 +126,23 @@ double wanted_heading(const SwimGoal& goal, const HumanState& state, double head
   return std::atan2(way.y, way.x) - crab;
 }
 
+// Whether a diver is too deep and has nothing that lifts him but his fins.
+bool sinks_away(const Body& body, const HumanState& state, double below_m, SwimmerState& swimmer) {
+  const bool lifted = body.jacket.capacity_m3 > 0.0 && can_fill(body, state);
+  if (swimmer.goes_back != kKicksUp && (lifted || below_m < kSunk_m)) return false;
+  swimmer.goes_back = below_m > kHardlyOff_m ? kKicksUp : 0;
+  return swimmer.goes_back == kKicksUp;
+}
+
 // The goal of a hovering diver: to rest; to swim back once drifted off, or once tilted by more than
 // posture corrects, since fins right a body that has way. In a current the head stays into it.
-SwimGoal hover_goal(SwimGoal goal, const HumanState& state, SwimmerState& swimmer) {
+SwimGoal hover_goal(const Body& body, SwimGoal goal, const HumanState& state,
+                    SwimmerState& swimmer) {
   const Vec3 way = goal.target_ned_m - state.root.position_ned_m;
+  if (sinks_away(body, state, -way.z, swimmer)) {
+    goal.speed_m_s = kKickUp_m_s;
+    return goal;
+  }
   const Vec3& drift = state.held.current_ned_m_s;
   const double drift_m_s = std::hypot(drift.x, drift.y);
   const bool current = drift_m_s > kStill_m_s;
@@ -146,7 +159,9 @@ SwimGoal hover_goal(SwimGoal goal, const HumanState& state, SwimmerState& swimme
     swimmer.goes_back = kRightsHimself;
   else if (off_m > kAdrift_m && swimmer.goes_back == 0)
     swimmer.goes_back = kGoesBack;
-  if (off_m < near_m && tilt_rad < 0.5 * kTilted_rad) swimmer.goes_back = 0;
+  // Level again, righting is done: so fast, a diver would circle around a near place for ever.
+  const bool there = off_m < near_m || swimmer.goes_back == kRightsHimself;
+  if (there && tilt_rad < 0.5 * kTilted_rad) swimmer.goes_back = 0;
   const bool steep = swimmer.goes_back == kRightsHimself && tilt_rad > kSteep_rad;
   if (swimmer.goes_back == 0 || steep) return goal;
   const WayBack& way_back = swimmer.goes_back == kRightsHimself ? kRighting : kBack;
@@ -262,7 +277,7 @@ void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& ask
           const HumanState& state, SwimmerState& swimmer, double dt_s, HumanInputs& inputs) {
   const bool hovers = asked.speed_m_s <= settings.gliding_speed_m_s;
   if (!hovers) swimmer.goes_back = 0;
-  const SwimGoal goal = hovers ? hover_goal(asked, state, swimmer) : asked;
+  const SwimGoal goal = hovers ? hover_goal(body, asked, state, swimmer) : asked;
   const HumanAttitude attitude = attitude_of(state.root.attitude);
   const Vec3 velocity_ned = state.root.attitude * state.root.velocity.linear();
   const Vec3 ahead_ned = state.root.attitude * Vec3(1.0, 0.0, 0.0);
@@ -293,10 +308,18 @@ void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& ask
     pitch = std::clamp(climb_m_s / std::max(goal.speed_m_s, 0.2), -kMostPitch_rad, kMostPitch_rad);
   }
   const bool fills = (inputs.buttons & kInflate) != 0;
-  if (swimmer.button_s < 0.0 && swimmer.lift_sum < 0.0 && !fills)
-    pitch = std::max(pitch, kVentPitch_rad);
+  const bool vents = swimmer.button_s < 0.0 && swimmer.lift_sum < 0.0 && !fills;
+  if (vents) pitch = std::max(pitch, kVentPitch_rad);
+  // Head up, with the back bent against it, no valve of the jacket is high enough: the back
+  // goes straight, and the valve at the shoulder lets the gas out.
+  const bool straightens = vents && attitude.pitch_rad > kTilted_rad;
+  if (straightens) {
+    pitch = attitude.pitch_rad;
+    swimmer.pitch_sum = 0.0;
+  }
   const double upright = (std::abs(attitude.pitch_rad) - kTilted_rad) / (kSteep_rad - kTilted_rad);
-  const double stoops = hovers && attitude.pitch_rad > 0.0 ? std::clamp(upright, 0.0, 1.0) : 0.0;
+  const double stoops =
+      hovers && !straightens && attitude.pitch_rad > 0.0 ? std::clamp(upright, 0.0, 1.0) : 0.0;
   follow(swimmer.stoop_rad, stoops * kStoop_rad, kStoopLag_s, dt_s);
   // A standing diver has no roll.
   const double roll_rad = attitude.roll_rad * std::cos(attitude.pitch_rad);

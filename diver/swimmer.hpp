@@ -12,7 +12,7 @@ struct SwimGoal {
   // The swimmer rises to a place well above by less than 9 m a minute, in wide turns if it lies
   // straight above, and sinks to one well below by about 9 m a minute.
   Vec3 target_ned_m{0.0};
-  // Through the water; 0: hovers there, level, and swims back after drifting away.
+  // Through the water; 0: hovers there, level, and swims back after drifting or sinking away.
   double speed_m_s = 0.5;
 };
 
@@ -55,7 +55,8 @@ struct SwimmerState {
   // The share of the rate at which the swimmer rises to a place well above; negative: sinks to one
   // well below; 0: neither.
   double rises = 0.0;
-  // While hovering, 1: drifted off and swims back; 2: tilted, and swims to right himself.
+  // While hovering, 1: drifted off and swims back; 2: tilted, and swims to right himself; 3: sunk
+  // too deep with nothing to fill a jacket, and kicks up.
   std::uint64_t goes_back = 0;
 
   static void fields(auto&& field, auto& self) {

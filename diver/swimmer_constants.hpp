@@ -89,7 +89,9 @@ struct WayBack {
   double speed_m_s, each_metre_1_s, most_m_s;
 };
 inline constexpr WayBack kBack{0.15, 0.01, 0.5}, kRighting{0.35, 0.15, 0.8};
-inline constexpr std::uint64_t kGoesBack = 1, kRightsHimself = 2;
+inline constexpr std::uint64_t kGoesBack = 1, kRightsHimself = 2, kKicksUp = 3;
+// Sunk so far below the place, a diver whom no jacket lifts swims up to it at this speed: free.
+inline constexpr double kSunk_m = 1.5, kKickUp_m_s = 0.5;
 
 // A button is pressed for kPress_s after kSure_l_s of unmet want of breath, then left for kWait_s:
 // the inflator gives 0.17 l in that time at 15 m (100 l a minute of 1 bar, gear.hpp). Free.

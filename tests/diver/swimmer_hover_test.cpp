@@ -136,6 +136,65 @@ TEST(Swimmer, HoversLevelInWhateverGear) {
   }
 }
 
+// Nothing lifts a diver without a jacket: the lead makes him neutral where he starts, with the
+// tanks that he has.
+TEST(Swimmer, WithoutAJacketStartsNeutralAndStays) {
+  for (const double depth_m : {3.0, 10.0, 25.0}) {
+    BodyParameters diver;
+    diver.gear.jacket.reset();
+    diver.start_depth_m = depth_m;
+    const Body body = make_body(diver).value();
+    Swim s = begin(body, {0.0, 0.0, depth_m}, 0.0);
+    EXPECT_NEAR(net_weight_n(body, s.state), 0.0, 2.5) << depth_m;
+    const HoverTrack hover = track_hover(body, s, depth_m, 60.0);
+    EXPECT_GT(hover.highest_m, depth_m - 1.0) << depth_m;
+    EXPECT_LT(hover.deepest_m, depth_m + 1.0) << depth_m;
+  }
+}
+
+// With too much lead, 22 N heavy, he swims up whenever he has sunk.
+TEST(Swimmer, WhoIsTooHeavyWithoutAJacketKicksUp) {
+  BodyParameters diver;
+  diver.gear.jacket.reset();
+  diver.gear.lead_kg = 3.0;
+  const Body body = make_body(diver).value();
+  Swim s = begin(body, {0.0, 0.0, 10.0}, 0.0);
+  ASSERT_GT(net_weight_n(body, s.state), 15.0);
+  const HoverTrack hover = track_hover(body, s, 10.0, 120.0);
+  EXPECT_LT(hover.deepest_m, 15.0);
+  EXPECT_LT(s.state.root.position_ned_m.z, 13.0);
+}
+
+// Head up, with too much gas in the jacket: the gas lies between the valves until the back is
+// straight.
+TEST(Swimmer, WhoRisesHeadUpLetsGasOut) {
+  const Body body = body_with(Gear{});
+  for (const double pitch_deg : {30.0, 40.0, 50.0, 60.0}) {
+    Swim s = begin(body, {0.0, 0.0, 18.0}, 0.0);
+    s.state.root.attitude = glm::angleAxis(radians(pitch_deg), Vec3(0, 1, 0));
+    s.state.life.jacket_moles *= 1.2;
+    s.state.life.tanks.moles[0] *= 0.1;
+    double highest_m = 18.0;
+    swim_for(body, s, {{0.0, 0.0, 20.0}, 0.0}, 60.0, [&](const HumanState& state) {
+      highest_m = std::min(highest_m, state.root.position_ned_m.z);
+    });
+    EXPECT_GT(highest_m, 11.0) << pitch_deg;
+  }
+}
+
+// Fast enough to right himself, a diver circles round a near place without coming to it.
+TEST(Swimmer, WhoIsLevelAgainStopsRightingHimself) {
+  const Body body = body_with(Gear{});
+  Swim s = begin(body, {0.0, 1.2, 15.0}, 0.0);
+  s.swimmer.goes_back = swimming::kRightsHimself;
+  int righting = 0, steps = 0;
+  swim_for(body, s, {{0.0, 0.0, 15.0}, 0.0}, 30.0, [&](const HumanState&) {
+    righting += ++steps > 2400 && s.swimmer.goes_back == swimming::kRightsHimself;
+  });
+  EXPECT_EQ(righting, 0);
+  EXPECT_EQ(s.swimmer.goes_back, 0u);
+}
+
 // A standing diver bends into trim, since a kick would carry the diver up.
 TEST(Swimmer, WhoStandsTurnsCalmlyIntoTrim) {
   const Body body = body_with(Gear{});
