@@ -150,8 +150,10 @@ TEST_F(Sight, WhatIsOutOfTheWaterIsNotHeardAndTold) {
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_NE(lines[0].find("all in its beams is out of the water, above y = 0"), std::string::npos)
       << lines[0];
-  // The part of the ball that is below the surface is heard.
+  // The part of a ball that is below the surface is heard.
   scene.objects[0].mount.pose.position_m.y = -0.1;
+  scene.sonars[0].mount.pose.rotation = glm::angleAxis(std::atan2(0.9, 3.0), Vec3(1, 0, 0));
+  scene.sonars[0].gather = "plane";
   EXPECT_GT(total(ping(device(), scene)), 0.0);
   // A sonar in the air hears neither what is beside it nor what is in the water.
   scene.sonars[0].mount.pose = {{0.0, 1.5, 0.0},

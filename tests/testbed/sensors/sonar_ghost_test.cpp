@@ -137,7 +137,6 @@ TEST_F(SonarGhost, ATargetSmallerThanACellHasItsGhostAtItsPlaceAndLevel) {
     ghost += power;
     ghost_m += power * 0.5 * (back_m + there_m);
   }
-  scene.sonars[0].terms.ghosts = scene::SonarGhosts{.surface = true, .surface_reflection = 0.5};
   const double level_db = 10.0 * std::log10(ghost / direct);
   EXPECT_NEAR(ghost_over_direct_db(device(), scene, 0.5), level_db, 0.5);
   EXPECT_NEAR(mean_ghost_range_m(device(), scene), ghost_m / ghost, 0.03);
