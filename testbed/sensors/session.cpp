@@ -139,10 +139,15 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
   work.begun_ns = now_ns();
   work.frame = request.frame;
   const scene::MotionSource motion(scene_, request.simulated);
+  std::vector<render::ViewSet> cameras;
+  for (const std::size_t i : request.cameras)
+    cameras.push_back(camera_views(motion, scene_.cameras[i], request.time_s, request.next_time_s));
   std::vector<std::uint32_t> worn;
-  for (const ViewsRequest& set : request.views)
-    if (set.views.worn_object != render::ViewSet::kWornByNobody)
-      worn.push_back(set.views.worn_object);
+  const auto wear = [&](const render::ViewSet& views) {
+    if (views.worn_object != render::ViewSet::kWornByNobody) worn.push_back(views.worn_object);
+  };
+  for (const render::ViewSet& views : cameras) wear(views);
+  for (const ViewsRequest& set : request.views) wear(set.views);
   const std::optional<double> exposed = exposed_s(scene_, request);
   work.state =
       render::evaluate_frame(motion, *gpu_scene_, request.time_s, motion_until_s(request, exposed),
@@ -176,9 +181,8 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
     const scene::Camera& camera = scene_.cameras[i];
     NERITIC_TRY_STATUS(
         add("camera " + camera.name,
-            {camera.name, camera_views(motion, camera, request.time_s, request.next_time_s),
-             camera.exposure, camera.antialias, camera.detail, request.camera_capture(k),
-             picture_of(i, request.camera_capture(k))},
+            {camera.name, std::move(cameras[k]), camera.exposure, camera.antialias, camera.detail,
+             request.camera_capture(k), picture_of(i, request.camera_capture(k))},
             i, work.cameras, frame->cameras));
   }
   for (std::size_t i = 0; i < request.views.size(); ++i)

@@ -100,5 +100,9 @@ std::optional<scene::LensView> lens_view_of(const scene::Camera& camera);
 // pair, half the baseline to each side; where it is at time_s and, for motion, at next_time_s.
 render::ViewSet camera_views(const scene::MotionSource& motion, const scene::Camera& camera,
                              double time_s = 0.0, double next_time_s = 0.0);
+// The object within whose head (the model's node "head") the eye is, of those that carry the mount:
+// such a view is drawn without that head. ViewSet::kWornByNobody: none.
+std::uint32_t worn_by(const scene::MotionSource& motion, const scene::Mount& mount,
+                      const Vec3& eye_m, double time_s);
 
 }  // namespace neritic::testbed

@@ -437,7 +437,36 @@ render::ViewSet camera_views(const scene::MotionSource& motion, const scene::Cam
     view.next_world_from_view = {next_center * eye_m, next_center.rotation};
     set.views.push_back(view);
   }
+  set.worn_object = worn_by(motion, camera.mount, center.position_m, time_s);
   return set;
+}
+
+// A person's head reaches so far from the neck, on the side that the spine points to. The eyes are
+// 0.18 m from it.
+std::uint32_t worn_by(const scene::MotionSource& motion, const scene::Mount& mount,
+                      const Vec3& eye_m, double time_s) {
+  constexpr double kHead_m = 0.25;
+  const scene::Scene& scene = motion.scene();
+  for (int at = mount.object; at >= 0;
+       at = scene.objects[static_cast<std::size_t>(at)].mount.object) {
+    const auto i = static_cast<std::size_t>(at);
+    const scene::Object& object = scene.objects[i];
+    if (object.model < 0 || !object.copies.empty()) continue;
+    const scene::Model& model = *scene.models[static_cast<std::size_t>(object.model)];
+    const auto head = std::ranges::find(model.nodes, "head", &scene::Node::name);
+    if (head == model.nodes.end() || head->parent < 0) continue;
+    const scene::ModelPose pose = motion.model_pose(i, model, time_s);
+    const Pose world_from_object = motion.world_from_object(i, time_s);
+    const auto place = [&](std::size_t node) {
+      return world_from_object * (object.scale * Vec3(pose.model_from_node[node][3]));
+    };
+    const Vec3 neck = place(static_cast<std::size_t>(head - model.nodes.begin()));
+    const Vec3 spine = neck - place(static_cast<std::size_t>(head->parent));
+    const Vec3 eye = eye_m - neck;
+    if (glm::length(eye) < kHead_m && glm::dot(eye, spine) > 0.0)
+      return static_cast<std::uint32_t>(i);
+  }
+  return render::ViewSet::kWornByNobody;
 }
 
 }  // namespace neritic::testbed

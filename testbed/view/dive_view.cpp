@@ -234,6 +234,7 @@ void DiveView::add_views(FrameRequest& request) {
   if (console_) console_->look(motion, request.time_s, pilot_, world_from_head_.position_m);
   const scene::Camera& camera = session_.scene().cameras[choice_.viewpoint().camera];
   const bool tracked = frame_.world_from_head.has_value();
+  const std::uint32_t worn = worn_object(motion, request.time_s);
   for (std::size_t i = 0; i < frame_.groups.size(); ++i) {
     const xr::ViewGroup& group = frame_.groups[i];
     ViewsRequest views{.name = i == 0 ? camera.name : fmt::format("{} {}", camera.name, i),
@@ -245,6 +246,7 @@ void DiveView::add_views(FrameRequest& request) {
     timeline_.current().view_scale = scale;
     views.views.width = scaled(group.width, scale);
     views.views.height = scaled(group.height, scale);
+    views.views.worn_object = worn;
     // A display that tracks nobody shows what the camera sees.
     const FrustumTangents lens =
         tangents_from_fov(camera.vertical_fov_rad, double(group.width) / group.height);
@@ -259,6 +261,15 @@ void DiveView::add_views(FrameRequest& request) {
     request.views.push_back(std::move(views));
   }
   add_inset(request, motion);
+}
+
+// The body whose eyes the views are: the wearer's, or in a window that which carries the camera in
+// its head.
+std::uint32_t DiveView::worn_object(const scene::MotionSource& motion, double time_s) const {
+  if (!frame_.world_from_head)
+    return worn_by(motion, choice_.viewpoint().mount, world_from_head_.position_m, time_s);
+  return wearer_ && wears_ ? static_cast<std::uint32_t>(wearer_->object())
+                           : render::ViewSet::kWornByNobody;
 }
 
 // A camera's picture beside the views, no larger than a panel shows it.
@@ -278,6 +289,7 @@ void DiveView::add_inset(FrameRequest& request, const scene::MotionSource& motio
                                      static_cast<double>(camera.width) / camera.height),
        .near_m = camera.near_m,
        .next_world_from_view = pose});
+  views.views.worn_object = worn_by(motion, camera.mount, pose.position_m, request.time_s);
   request.views.push_back(std::move(views));
 }
 

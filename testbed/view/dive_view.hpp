@@ -94,6 +94,7 @@ class DiveView final : public FrameView {
   void take_time(const DiveInput& input);
   void take_click();
   void switch_lamps();
+  std::uint32_t worn_object(const scene::MotionSource& motion, double time_s) const;
   void add_inset(FrameRequest& request, const scene::MotionSource& motion) const;
   void keep_run(const DiveInput& input);
   void tell(const std::string& note);

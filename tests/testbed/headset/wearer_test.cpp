@@ -1,5 +1,6 @@
 // A headset's wearer as a diver: what is tracked and pressed becomes the diver's inputs.
 #include "diver/jacket.hpp"
+#include "engine/core/npy.hpp"
 #include "testbed/samples/riding.hpp"
 #include "testbed/view/dive_camera.hpp"
 #include "tests/testbed/headset/headset_run.hpp"
@@ -150,6 +151,27 @@ TEST_F(HeadsetWearer, APushedStickSwimsWhereTheHeadLooks) {
       drawn_pose(state()).rotation * inputs().head.world_from_head.rotation * Vec3(0, 0, -1);
   EXPECT_GT(glm::dot(moved, ahead), 0.3) << moved.x << " " << moved.y << " " << moved.z << " ahead "
                                          << ahead.x << " " << ahead.y << " " << ahead.z;
+}
+
+// From a metre before the own eyes, looking back: the crown would be nearer than that.
+TEST_F(HeadsetWearer, TheOwnBodyIsSeenWithoutItsHead) {
+  const std::string back = fmt::format(
+      "size 120 120\nviews 1\nfov -40 40 40 -40\nhead 0 0 1.6 -1 180\nout {}\nout_frames 2\n",
+      folder());
+  // Within 0.15 m around the line of sight that ends in the own eyes.
+  const auto nearest_m = [&] {
+    const auto depth = read_npy(folder() + "/frame_0002_view_0_depth.npy").value();
+    const std::vector<double> metres = depth.to_doubles();
+    double nearest = 1e9;
+    for (std::size_t y = 52; y < 68; ++y)
+      for (std::size_t x = 52; x < 68; ++x) nearest = std::min(nearest, metres[y * 120 + x]);
+    return nearest;
+  };
+  fakes::FakeHeadset fake(back);
+  NERITIC_ASSERT_STATUS(dive(scene_, 4));
+  const double worn_m = nearest_m();
+  EXPECT_GT(worn_m, 1.0);
+  EXPECT_LT(worn_m, 3.0);  // the shoulders
 }
 
 }  // namespace
