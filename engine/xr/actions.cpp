@@ -29,6 +29,18 @@ std::vector<Control> make_controls() {
   return all;
 }
 
+bool is_motion(std::size_t control) {
+  const Control& at = controls()[control];
+  return at.device == "mouse" && (at.name == "x" || at.name == "y" || at.name == "wheel");
+}
+
+// Takes values between its ends: sticks, triggers, a squeezed grip.
+bool is_analog(std::size_t control) {
+  const std::string& name = controls()[control].name;
+  return name.ends_with("_x") || name.ends_with("_y") || name.ends_with("trigger") ||
+         name == "squeeze";
+}
+
 }  // namespace
 
 std::span<const Control> controls() {
@@ -68,6 +80,57 @@ Result<ActionTable::Binding> ActionTable::parse(const std::string& text) {
   return binding;
 }
 
+Status ActionTable::check(const ActionDesc& desc, const std::string& text, const Binding& binding) {
+  const bool moves = is_motion(binding.control);
+  if (desc.kind == ActionKind::kMotion && !moves)
+    return bad_input(
+        "action {}: '{}' is held and does not move: accepted are mouse x, mouse y and "
+        "mouse wheel",
+        desc.name, text);
+  if (desc.kind != ActionKind::kMotion && moves)
+    return bad_input("action {}: '{}' moves and is never {}: accepted are keys, buttons{}",
+                     desc.name, text, desc.kind == ActionKind::kPress ? "pressed" : "held",
+                     desc.kind == ActionKind::kPress ? "" : ", sticks and triggers");
+  if (desc.kind == ActionKind::kPress && binding.sign < 0.0)
+    return bad_input("action {}: '{}' is pressed and has no direction: accepted is '{}'", desc.name,
+                     text, text.substr(1));
+  return {};
+}
+
+// Of two bindings of one control, unless each has another condition.
+Status ActionTable::check_alone(std::span<const ActionDesc> actions,
+                                const std::vector<Action>& read) {
+  struct Use {
+    std::size_t action;
+    const Binding* binding;
+  };
+  std::vector<Use> uses;
+  for (std::size_t i = 0; i < read.size(); ++i)
+    for (std::size_t k = 0; k < read[i].bindings.size(); ++k) {
+      const Binding& binding = read[i].bindings[k];
+      for (const Use& use : uses) {
+        const Binding& other = *use.binding;
+        const bool both = binding.held == other.held || binding.held == kMaxControls ||
+                          other.held == kMaxControls;
+        const bool axes =
+            read[i].kind == ActionKind::kAxis && read[use.action].kind == ActionKind::kAxis;
+        if (binding.control != other.control || !both) continue;
+        const Control& control = controls()[binding.control];
+        if (use.action == i)
+          return bad_input("action {}: {} {} is named twice: accepted is one binding of a control",
+                           actions[i].name, control.device, control.name);
+        if (!(axes && is_analog(binding.control)))
+          return bad_input(
+              "action {}: {} {} is also that of {}: accepted is one action a control (give {} "
+              "another one, or none: {} = [])",
+              actions[i].name, control.device, control.name, actions[use.action].name,
+              actions[use.action].name, actions[use.action].name);
+      }
+      uses.push_back({i, &binding});
+    }
+  return {};
+}
+
 Result<ActionTable> ActionTable::create(std::span<const ActionDesc> actions) {
   ActionTable table;
   for (const ActionDesc& desc : actions) {
@@ -75,10 +138,12 @@ Result<ActionTable> ActionTable::create(std::span<const ActionDesc> actions) {
     for (const std::string& text : desc.bindings) {
       const auto binding = parse(text);
       if (!binding.ok()) return bad_input("action {}: {}", desc.name, binding.error().message);
+      NERITIC_TRY_STATUS(check(desc, text, binding.value()));
       action.bindings.push_back(binding.value());
     }
     table.actions_.push_back(std::move(action));
   }
+  NERITIC_TRY_STATUS(check_alone(actions, table.actions_));
   return table;
 }
 

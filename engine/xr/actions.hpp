@@ -67,7 +67,9 @@ class ActionValues {
 
 class ActionTable {
  public:
-  // kBadInput names the action and the binding that cannot be read.
+  // kBadInput names the action and the binding that cannot be read or can never act: a press of
+  // something that moves or against a direction, a motion of something that is held, a control that
+  // two actions would read at once. Sticks and triggers may move several axes.
   static Result<ActionTable> create(std::span<const ActionDesc> actions);
   ActionValues values(const DeviceState& state, const InputClaims& claims = {}) const;
   // Whether the mouse moves something now, so that its cursor should not leave the window.
@@ -84,6 +86,8 @@ class ActionTable {
     std::vector<Binding> bindings;
   };
   static Result<Binding> parse(const std::string& text);
+  static Status check(const ActionDesc& desc, const std::string& text, const Binding& binding);
+  static Status check_alone(std::span<const ActionDesc> actions, const std::vector<Action>& read);
   std::vector<Action> actions_;
 };
 

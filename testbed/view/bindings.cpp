@@ -44,6 +44,9 @@ Result<std::vector<xr::ActionDesc>> bound_actions(std::vector<xr::ActionDesc> ac
       if (!read.ok()) return bad_input("{}: {}", at(file, entry.where), read.error().message);
     }
   }
+  // With the bindings that stay.
+  const auto read = xr::ActionTable::create(actions);
+  if (!read.ok()) return bad_input("{}: {}", file.string(), read.error().message);
   return actions;
 }
 

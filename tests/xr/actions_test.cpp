@@ -80,7 +80,47 @@ TEST(Actions, AnUnknownControlIsRefusedByActionAndNameWithTheKnownOnes) {
   EXPECT_NE(refusal("foot left").find("accepted devices are key, mouse, pad"), std::string::npos)
       << refusal("foot left");
   EXPECT_NE(refusal("mouse x while mouse nose").find("mouse nose"), std::string::npos);
-  EXPECT_EQ(refusal("-key LeftShift while mouse left"), "");
+  EXPECT_EQ(refusal("key LeftShift while mouse left"), "");
+}
+
+TEST(Actions, ABindingThatCanNeverActIsRefused) {
+  const auto refusal = [](ActionKind kind, const char* binding) {
+    const std::vector<ActionDesc> actions{{"dance", kind, {binding}, ""}};
+    const auto made = ActionTable::create(actions);
+    return made.ok() ? std::string() : made.error().message;
+  };
+  EXPECT_EQ(refusal(ActionKind::kPress, "mouse x"),
+            "action dance: 'mouse x' moves and is never pressed: accepted are keys, buttons");
+  EXPECT_NE(refusal(ActionKind::kAxis, "mouse wheel").find("moves and is never held"),
+            std::string::npos);
+  EXPECT_NE(refusal(ActionKind::kMotion, "key W").find("is held and does not move"),
+            std::string::npos);
+  EXPECT_EQ(refusal(ActionKind::kPress, "-key I"),
+            "action dance: '-key I' is pressed and has no direction: accepted is 'key I'");
+  EXPECT_EQ(refusal(ActionKind::kPress, "key I"), "");
+  EXPECT_EQ(refusal(ActionKind::kMotion, "-mouse wheel"), "");
+  EXPECT_EQ(refusal(ActionKind::kAxis, "-pad left_x"), "");
+}
+
+TEST(Actions, AControlHasOneActionUnlessItIsASticks) {
+  const auto refusal = [](const std::vector<ActionDesc>& actions) {
+    const auto made = ActionTable::create(actions);
+    return made.ok() ? std::string() : made.error().message;
+  };
+  const auto press = ActionKind::kPress, axis = ActionKind::kAxis;
+  EXPECT_NE(refusal({{"ahead", axis, {"-key W"}, ""}, {"quit", press, {"key Q", "key W"}, ""}})
+                .find("action quit: key W is also that of ahead"),
+            std::string::npos);
+  EXPECT_NE(refusal({{"map", press, {"key M"}, ""}, {"quit", press, {"key M while key A"}, ""}})
+                .find("action quit: key M"),
+            std::string::npos);
+  EXPECT_NE(refusal({{"ahead", axis, {"-key W", "key W"}, ""}}).find("key W is named twice"),
+            std::string::npos);
+  EXPECT_EQ(refusal({{"turn", axis, {"pad right_x"}, ""}, {"look", axis, {"pad right_x"}, ""}}),
+            "");
+  EXPECT_EQ(refusal({{"map", press, {"key M while key A"}, ""},
+                     {"quit", press, {"key M while key B"}, ""}}),
+            "");
 }
 
 TEST(Actions, EveryControlHasANameOfItsOwn) {
