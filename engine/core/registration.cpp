@@ -139,7 +139,93 @@ double spread_m(const Centred& points, RegistrationFreedom freedom, bool of_from
   return std::sqrt(std::max(0.0, eigen.values[1]) + std::max(0.0, eigen.values[2]));
 }
 
+// By a turn, a shift and a scale: the best scale is that of the turned points' projection on the
+// others.
+struct Scaled {
+  double scale = 1.0, rms_m = 0.0;
+};
+Scaled fit_scaled(std::span<const PointPair> pairs, RegistrationFreedom freedom) {
+  const Centred points = centred(pairs, 1.0);
+  const Quat turn = fit(pairs, freedom, 1.0).to_from.rotation;
+  double along = 0.0, own = 0.0, square_m2 = 0.0;
+  for (const auto& [a, b] : points.pairs) {
+    along += glm::dot(turn * a, b);
+    own += glm::dot(a, a);
+  }
+  if (!(own > 0.0) || !(along > 0.0)) return {1.0, std::numeric_limits<double>::infinity()};
+  const double scale = along / own;
+  for (const auto& [a, b] : points.pairs) {
+    const Vec3 miss = scale * (turn * a) - b;
+    square_m2 += glm::dot(miss, miss);
+  }
+  return {scale, std::sqrt(square_m2 / static_cast<double>(pairs.size()))};
+}
+
+// The international foot and inch: 0.3048 m and 0.0254 m (1959).
+std::string units_of(double scale) {
+  struct Unit {
+    const char* name;
+    double metres;
+  };
+  for (const Unit unit : {Unit{"millimetres", 0.001}, Unit{"centimetres", 0.01},
+                          Unit{"inches", 0.0254}, Unit{"feet", 0.3048}}) {
+    if (std::abs(std::log(scale / unit.metres)) < 0.02)
+      return fmt::format("the lab's columns are in {}, accepted are metres", unit.name);
+    if (std::abs(std::log(scale * unit.metres)) < 0.02)
+      return fmt::format("the scene's columns are in {}, accepted are metres", unit.name);
+  }
+  return "accepted are metres on both sides";
+}
+
 }  // namespace
+
+std::string misfit(std::span<const PointPair> pairs, RegistrationFreedom freedom,
+                   const Registration& found) {
+  // What a survey by hand leaves; better fits need no other explanation.
+  constexpr double kGood_m = 0.02, kBetter = 0.2, kWorst = 0.1;
+  const auto n = static_cast<double>(pairs.size());
+  const auto explains = [&](double rms_m) { return rms_m < kBetter * found.rms_m; };
+  if (!(found.rms_m > kGood_m)) return {};
+  const auto residuals = [&](double rms_m) {
+    return fmt::format("{:.4f} m rms instead of {:.4f}", rms_m, found.rms_m);
+  };
+  if (explains(found.mirrored_rms_m))
+    return fmt::format(
+        "the pairs fit a mirrored frame ({}): one of the frames is left-handed, or "
+        "two columns are exchanged",
+        residuals(found.mirrored_rms_m));
+  for (const RegistrationFreedom free : {freedom, RegistrationFreedom::kFree}) {
+    if (free == RegistrationFreedom::kFree && pairs.size() < 3) break;
+    const Scaled scaled = fit_scaled(pairs, free);
+    if (explains(scaled.rms_m) && std::abs(std::log(scaled.scale)) > 0.02)
+      return fmt::format("the pairs fit where a lab's metre is {:.5g} m of the scene ({}): {}",
+                         scaled.scale, residuals(scaled.rms_m), units_of(scaled.scale));
+  }
+  if (freedom == RegistrationFreedom::kLevel && pairs.size() >= 3) {
+    const double free_m = std::sqrt(fit(pairs, RegistrationFreedom::kFree, 1.0).square_sum_m2 / n);
+    if (explains(free_m))
+      return fmt::format(
+          "the pairs fit a frame whose y does not point up ({}): accepted are "
+          "frames with y up, --lab-up z, or --tilted",
+          residuals(free_m));
+    const double mirrored_m =
+        std::sqrt(fit(pairs, RegistrationFreedom::kFree, -1.0).square_sum_m2 / n);
+    if (explains(mirrored_m))
+      return fmt::format(
+          "the pairs fit a frame that is mirrored and whose y does not point up "
+          "({}): its axes are named otherwise than the scene's",
+          residuals(mirrored_m));
+  }
+  const Centred points = centred(pairs, 1.0);
+  double square_m2 = 0.0;
+  for (const PointPair& pair : points.pairs) square_m2 += glm::dot(pair.to_m, pair.to_m) / n;
+  if (found.rms_m < kWorst * std::sqrt(square_m2)) return {};
+  const auto worst = std::ranges::max_element(found.residual_m);
+  return fmt::format(
+      "the pairs do not fit: {:.4f} m rms between places that lie {:.4f} m from "
+      "their middle, the worst is pair {} with {:.4f} m",
+      found.rms_m, std::sqrt(square_m2), worst - found.residual_m.begin() + 1, *worst);
+}
 
 Result<Registration> register_points(std::span<const PointPair> pairs,
                                      RegistrationFreedom freedom) {

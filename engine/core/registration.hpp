@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "engine/core/math.hpp"
@@ -29,6 +30,11 @@ struct Registration {
   // rms_m of the best fit to mirrored points. Where it is far smaller, one frame is left-handed.
   double mirrored_rms_m = 0.0;
 };
+
+// Why pairs do not fit, where something simple explains it; empty: they fit, or nothing does.
+// Where the residual is above a tenth of how far the points lie apart, "they do not fit".
+std::string misfit(std::span<const PointPair> pairs, RegistrationFreedom freedom,
+                   const Registration& found);
 
 // Two pairs or more at the least (level), three (free). Errors: too few, no numbers, points that
 // spread less than 0.05 m across the axes of the turn, so that it would be a guess.

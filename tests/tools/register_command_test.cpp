@@ -61,5 +61,35 @@ TEST(RegisterCommand, LinesThatFailNameWhereAndWhatIsAccepted) {
               HasSubstr("mirrored frame"));
 }
 
+// The frame is judged before it is printed.
+TEST(RegisterCommand, PairsThatDoNotFitAreRefusedWithTheReasonAndNothingOnStdout) {
+  const test::ScratchFolder folder;
+  std::string said;
+  const auto error_of = [&](const std::string& rows) {
+    EXPECT_TRUE(write_text(folder / "m.csv",
+                           "lab_x_m,lab_y_m,lab_z_m,scene_x_m,scene_y_m,scene_z_m\n" + rows)
+                    .ok());
+    Status status;
+    ::testing::internal::CaptureStderr();
+    EXPECT_EQ(said_by({.file = (folder / "m.csv").string()}, &status), "");
+    said = ::testing::internal::GetCapturedStderr();
+    EXPECT_FALSE(status.ok()) << rows;
+    return status.ok() ? std::string() : status.error().message;
+  };
+  EXPECT_THAT(error_of("0,0,0,0,0,0\n1000,0,0,1,0,0\n0,0,1000,0,0,1\n"),
+              HasSubstr("the lab's columns are in millimetres, accepted are metres"));
+  EXPECT_THAT(said, HasSubstr("3 pairs, residual 666"));
+  EXPECT_THAT(error_of("0,0,0,0,0,0\n1,0,0,3.2808,0,0\n0,0,1,0,0,3.2808\n"),
+              HasSubstr("the scene's columns are in feet"));
+  // Upside down: half a turn about x.
+  EXPECT_THAT(error_of("0,0,0,0,0,0\n1,0,0,1,0,0\n0,2,0,0,-2,0\n0,0,3,0,0,-3\n"),
+              HasSubstr("a frame whose y does not point up"));
+  // Left-handed, with y down.
+  EXPECT_THAT(error_of("0,0,0,0,0,0\n1,0,0,1,0,0\n0,2,0,0,-2,0\n0,0,3,0,0,3\n"),
+              HasSubstr("mirrored"));
+  EXPECT_THAT(error_of("0,0,0,0,0,0\n1,0,0,1,0,0\n0,0,1,0,0,1\n2,0,2,5,1,4\n"),
+              HasSubstr("the pairs do not fit"));
+}
+
 }  // namespace
 }  // namespace neritic::tools

@@ -57,6 +57,16 @@ std::string number(double value) {
   return fmt::format("{:.9g}", value == 0.0 ? 0.0 : value);
 }
 
+std::string summary_of(const Registration& fit) {
+  std::string text =
+      fmt::format("{} pairs, residual {:.4f} m rms", fit.residual_m.size(), fit.rms_m);
+  if (std::isfinite(fit.turn_error_rad))
+    text += fmt::format(", turn known to {:.3f} degrees (1 sigma)", degrees(fit.turn_error_rad));
+  text += "; by pair:";
+  for (const double residual : fit.residual_m) text += fmt::format(" {:.4f}", residual);
+  return text;
+}
+
 }  // namespace
 
 Status run_register(const RegisterFlags& flags) {
@@ -64,10 +74,15 @@ Status run_register(const RegisterFlags& flags) {
     return refusal("--lab-up", flags.lab_up + " beside --headset", "y, as headsets have it");
   NERITIC_TRY(std::vector<PointPair> pairs, read_pairs(flags));
   if (flags.headset) NERITIC_TRY_STATUS(measure_by_headset(pairs));
-  Result<Registration> found = register_points(
-      pairs, flags.tilted ? RegistrationFreedom::kFree : RegistrationFreedom::kLevel);
+  const RegistrationFreedom freedom =
+      flags.tilted ? RegistrationFreedom::kFree : RegistrationFreedom::kLevel;
+  Result<Registration> found = register_points(pairs, freedom);
   if (!found.ok()) return failure(found.error().code, "{}: {}", flags.file, found.error().message);
   const Registration& fit = *found;
+  const std::string summary = summary_of(fit);
+  fmt::print(stderr, "{}\n", summary);
+  const std::string wrong = misfit(pairs, freedom, fit);
+  if (!wrong.empty()) return failure(ErrorCode::kUnsupported, "{}: {}", flags.file, wrong);
   Pose world_from_lab = fit.to_from;
   if (flags.lab_up == "z")
     world_from_lab.rotation = glm::normalize(world_from_lab.rotation * y_up_from_z_up());
@@ -84,22 +99,10 @@ Status run_register(const RegisterFlags& flags) {
     if (std::isfinite(fit.turn_error_rad)) json["turn_error_deg"] = degrees(fit.turn_error_rad);
     fmt::print("{}\n", json_text(json));
   } else {
-    fmt::print("[lab]\nposition_m = [{}, {}, {}]\nrotation_xyzw = [{}, {}, {}, {}]\n", number(p.x),
-               number(p.y), number(p.z), number(q.x), number(q.y), number(q.z), number(q.w));
-    fmt::print("# {} pairs, residual {:.4f} m rms", pairs.size(), fit.rms_m);
-    if (std::isfinite(fit.turn_error_rad))
-      fmt::print(", turn known to {:.3f} degrees (1 sigma)", degrees(fit.turn_error_rad));
-    fmt::print("; by pair:");
-    for (const double residual : fit.residual_m) fmt::print(" {:.4f}", residual);
-    fmt::print("\n");
+    fmt::print("[lab]\nposition_m = [{}, {}, {}]\nrotation_xyzw = [{}, {}, {}, {}]\n# {}\n",
+               number(p.x), number(p.y), number(p.z), number(q.x), number(q.y), number(q.z),
+               number(q.w), summary);
   }
-  std::fflush(stdout);
-  if (fit.mirrored_rms_m < 0.2 * fit.rms_m && fit.rms_m > 0.02)
-    return failure(
-        ErrorCode::kUnsupported,
-        "{}: the pairs fit a mirrored frame ({:.4f} m rms instead of {:.4f}): one of the "
-        "frames is left-handed, or two columns are exchanged",
-        flags.file, fit.mirrored_rms_m, fit.rms_m);
   return {};
 }
 
