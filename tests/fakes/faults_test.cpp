@@ -214,5 +214,58 @@ TEST(WrongStart, AVulkanDeviceThatTheRuntimeDidNotMakeIsRefused) {
   other.value().reset();
 }
 
+// XR_KHR_vulkan_enable: a client's own instance needs the extensions that the runtime names, and
+// the device those of devices.
+TEST(WrongVulkan, AnInstanceAndADeviceWithoutTheWantedExtensions) {
+  if (test::may_skip_without_device()) GTEST_SKIP() << "no Vulkan device";
+  FakeHeadset headset;
+  headset.expect_faults();
+  Client client;
+  client.start({XR_KHR_VULKAN_ENABLE_EXTENSION_NAME});
+  EXPECT_EQ(headset.faults(), "");
+  const auto text = [&](const char* name) {
+    const auto ask = client.function<PFN_xrGetVulkanInstanceExtensionsKHR>(name);
+    std::uint32_t count = 0;
+    EXPECT_EQ(ask(client.instance, client.system, 0, &count, nullptr), XR_SUCCESS);
+    std::string found(count, '\0');
+    EXPECT_EQ(ask(client.instance, client.system, count, &count, found.data()), XR_SUCCESS);
+    return std::string(found.c_str());
+  };
+  EXPECT_EQ(text("xrGetVulkanInstanceExtensionsKHR"), "VK_KHR_external_memory_capabilities");
+  EXPECT_EQ(text("xrGetVulkanDeviceExtensionsKHR"),
+            "VK_KHR_dedicated_allocation VK_KHR_get_memory_requirements2");
+  const auto device =
+      client.function<PFN_xrGetVulkanGraphicsDeviceKHR>("xrGetVulkanGraphicsDeviceKHR");
+  VkPhysicalDevice physical = VK_NULL_HANDLE;
+  EXPECT_EQ(device(client.instance, client.system, client.device->instance(), &physical),
+            XR_ERROR_VALIDATION_FAILURE);
+  EXPECT_THAT(headset.faults(), HasSubstr("vkInstance lacks VK_KHR_external_memory_capabilities"));
+  headset.write("vulkan_instance_extensions\n");
+  EXPECT_EQ(device(client.instance, client.system, client.device->instance(), &physical),
+            XR_SUCCESS);
+  EXPECT_EQ(physical, client.device->physical());
+  EXPECT_EQ(xrDestroySession(client.session), XR_SUCCESS);
+  client.session = XR_NULL_HANDLE;
+  XrGraphicsBindingVulkanKHR binding{XR_TYPE_GRAPHICS_BINDING_VULKAN_KHR};
+  binding.instance = client.device->instance();
+  binding.physicalDevice = client.device->physical();
+  binding.device = client.device->handle();
+  binding.queueFamilyIndex = client.device->queue_family();
+  const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, &binding, 0, client.system};
+  EXPECT_EQ(xrCreateSession(client.instance, &info, &client.session),
+            XR_ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING);
+  EXPECT_THAT(headset.faults(), HasSubstr("xrGetVulkanGraphicsRequirementsKHR was not called"));
+  XrGraphicsRequirementsVulkanKHR needs{XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN_KHR};
+  EXPECT_EQ(client.function<PFN_xrGetVulkanGraphicsRequirementsKHR>(
+                "xrGetVulkanGraphicsRequirementsKHR")(client.instance, client.system, &needs),
+            XR_SUCCESS);
+  EXPECT_EQ(xrCreateSession(client.instance, &info, &client.session),
+            XR_ERROR_GRAPHICS_DEVICE_INVALID);
+  EXPECT_THAT(headset.faults(),
+              HasSubstr("the binding's device lacks VK_KHR_dedicated_allocation"));
+  headset.write("vulkan_device_extensions\n");
+  EXPECT_EQ(xrCreateSession(client.instance, &info, &client.session), XR_SUCCESS);
+}
+
 }  // namespace
 }  // namespace neritic::fakes

@@ -68,6 +68,10 @@ namespace neritic::xr::openxr {
   X(GetActionStateFloat)                 \
   X(GetActionStatePose)                  \
   X(SyncActions)                         \
+  X(GetVulkanGraphicsRequirementsKHR)    \
+  X(GetVulkanInstanceExtensionsKHR)      \
+  X(GetVulkanDeviceExtensionsKHR)        \
+  X(GetVulkanGraphicsDeviceKHR)          \
   X(ConvertTimeToTimespecTimeKHR)        \
   X(EnumerateDisplayRefreshRatesFB)      \
   X(RequestDisplayRefreshRateFB)         \

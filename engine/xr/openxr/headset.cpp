@@ -17,6 +17,8 @@ namespace {
 constexpr std::chrono::milliseconds kIdle{10};
 // Between two tries to reach a runtime that went away.
 constexpr TimeNs kRetry_ns = 500'000'000;
+// So many calls that fail in a row (XR_ERROR_RUNTIME_FAILURE) are no passing trouble.
+constexpr int kMostStumbles = 10;
 
 // Between two pictures: what the runtime says, where that can be a screen's, else 90 a second.
 TimeNs period_of(const XrFrameState& state) {
@@ -58,6 +60,7 @@ class OpenXrHeadset final : public Headset {
   void end_session();
   void disconnect();
   void reconnect();
+  Status try_again();
   // After a failed call: goes on without the session or the runtime where it was lost, else gives
   // the error back.
   Status recover(const Status& status);
@@ -74,11 +77,15 @@ class OpenXrHeadset final : public Headset {
   HeadsetInfo info_;
   std::vector<std::string> messages_;
   gpu::Device* device_ = nullptr;
+  EnabledVulkan vulkan_;
   std::unique_ptr<Runtime> runtime_;  // nullptr: it went away
   std::unique_ptr<Presenter> presenter_;
   Parts parts_;  // empty: no session
   TimeNs retry_at_ns_ = 0;
-  std::string told_;  // why the last try failed
+  std::string told_;       // why the last try failed
+  Status not_declared_;    // of this frame: a passing failure
+  bool stumbled_ = false;  // in this frame
+  int stumbles_ = 0;       // calls in a row that failed without a loss
   Pose world_from_stage_;
   bool in_frame_ = false;  // between xrBeginFrame and xrEndFrame
   XrTime display_at_ = 0;
@@ -95,14 +102,14 @@ Status OpenXrHeadset::connect() {
 
 void OpenXrHeadset::require(gpu::DeviceOptions& options) {
   options.maker.instance = [this](const VkInstanceCreateInfo& info, VkInstance* instance) {
-    return runtime_->make_instance(info, instance);
+    return runtime_->make_instance(info, instance, vulkan_);
   };
   options.maker.physical = [this](VkInstance instance, VkPhysicalDevice* device) {
     return runtime_->find_physical(instance, device);
   };
   options.maker.device = [this](VkPhysicalDevice physical, const VkDeviceCreateInfo& info,
                                 VkDevice* device) {
-    return runtime_->make_device(physical, info, device);
+    return runtime_->make_device(physical, info, device, vulkan_);
   };
 }
 
@@ -138,6 +145,13 @@ void OpenXrHeadset::disconnect() {
 }
 
 Status OpenXrHeadset::recover(const Status& status) {
+  if (runtime_ && runtime_->take_failure() && runtime_->loss() == Loss::kNone && !status.ok()) {
+    // One failed call costs a frame. Where they go on to fail a new session may help.
+    stumbled_ = true;
+    if (stumbles_++ == 0) log_warn("{}: a frame is not shown", status.error().message);
+    if (stumbles_ < kMostStumbles) return {};
+    runtime_->lose(Loss::kSession);
+  }
   if (status.ok() && (!runtime_ || runtime_->loss() == Loss::kNone)) return {};
   if (!runtime_ || runtime_->loss() == Loss::kNone) return status;
   const bool instance = runtime_->loss() == Loss::kInstance;
@@ -149,26 +163,43 @@ Status OpenXrHeadset::recover(const Status& status) {
   else
     runtime_->forget_session_loss();
   retry_at_ns_ = now_ns() + (instance ? kRetry_ns : 0);
+  stumbles_ = 0;
   return {};
 }
 
-// Tries again what was lost, once a while. Its failures are those of a runtime that is not back.
+// Tries again what was lost, once a while. Its failures are those of a runtime that is not back, or
+// of a headset that is not plugged in: only the loss of the instance makes it connect anew.
 void OpenXrHeadset::reconnect() {
   if (parts_.session || now_ns() < retry_at_ns_) return;
   retry_at_ns_ = now_ns() + kRetry_ns;
-  Status status;
-  if (!runtime_) {
-    status = connect();
-    if (status.ok()) status = runtime_->check_device(*device_);
-  }
-  if (status.ok()) status = start_session();
+  const Status status = try_again();
   if (status.ok()) {
     log_info("the headset is back");
+    told_.clear();
+    stumbles_ = 0;
     return;
   }
   if (status.error().message != told_) log_warn("{}", status.error().message);
   told_ = status.error().message;
-  disconnect();
+  if (!runtime_) return;
+  if (runtime_->take_failure() && ++stumbles_ >= kMostStumbles) runtime_->lose(Loss::kInstance);
+  if (runtime_->loss() == Loss::kInstance) {
+    runtime_.reset();
+    stumbles_ = 0;
+  } else {
+    runtime_->forget_session_loss();
+  }
+}
+
+Status OpenXrHeadset::try_again() {
+  if (!runtime_) {
+    NERITIC_TRY(runtime_, Runtime::create(options_, false, &messages_));
+  }
+  NERITIC_TRY_STATUS(runtime_->find_system());
+  info_ = runtime_->info();
+  NERITIC_TRY_STATUS(runtime_->ask_vulkan());
+  NERITIC_TRY_STATUS(runtime_->check_device(*device_, vulkan_));
+  return start_session();
 }
 
 Result<DisplayFrame> OpenXrHeadset::begin_frame(const Pose& world_from_stage) {
@@ -177,6 +208,8 @@ Result<DisplayFrame> OpenXrHeadset::begin_frame(const Pose& world_from_stage) {
   DisplayFrame frame;
   frame.display_at_ns = now_ns();
   reconnect();
+  if (runtime_) (void)runtime_->take_failure();  // of calls that nobody missed
+  stumbled_ = false;
   if (parts_.session) NERITIC_TRY_STATUS(recover(begin(frame)));
   if (!in_frame_ && frame.verdict != FrameVerdict::kQuit) std::this_thread::sleep_for(kIdle);
   if (!in_frame_ && frame.verdict == FrameVerdict::kDraw) frame.verdict = FrameVerdict::kHidden;
@@ -197,9 +230,15 @@ Status OpenXrHeadset::begin(DisplayFrame& frame) {
   NERITIC_TRY_STATUS(
       runtime_->check(runtime_->xr().WaitFrame(session.handle(), nullptr, &state), "xrWaitFrame"));
   runtime_->note_frame(state.predictedDisplayTime, state.predictedDisplayPeriod);
-  NERITIC_TRY_STATUS(
-      runtime_->check(runtime_->xr().BeginFrame(session.handle(), nullptr), "xrBeginFrame"));
+  const Status begun =
+      runtime_->check(runtime_->xr().BeginFrame(session.handle(), nullptr), "xrBeginFrame");
+  if (!begun.ok()) {
+    // The runtime waits for the begin of the frame that it announced: a new session is needed.
+    if (runtime_->take_failure()) runtime_->lose(Loss::kSession);
+    return begun;
+  }
   in_frame_ = true;
+  not_declared_ = {};
   display_at_ = state.predictedDisplayTime;
   near_m_.assign(parts_.views->swapchains().size(), 0.0);
   projected_.assign(near_m_.size(), false);
@@ -246,11 +285,9 @@ Result<ShownPicture> OpenXrHeadset::declare(graph::FrameGraph& graph, const Pose
   NERITIC_CHECK(in_frame_, "layers without a frame");
   ShownPicture shown;
   const Status status = declare_layers(graph, layers, shown);
-  if (status.ok() || runtime_->loss() == Loss::kNone) {
-    NERITIC_TRY_STATUS(status);
-    return shown;
-  }
-  // end_frame drops what was lost.
+  if (!status.ok() && !runtime_->failed() && runtime_->loss() == Loss::kNone) return status.error();
+  // end_frame drops what was lost, and counts what may pass.
+  not_declared_ = status;
   return shown;
 }
 
@@ -289,7 +326,11 @@ Status OpenXrHeadset::declare_projection(graph::FrameGraph& graph, const Project
 
 Status OpenXrHeadset::end_frame(bool submitted) {
   if (!in_frame_) return {};
-  return recover(end(submitted));
+  Status status = end(submitted);
+  in_frame_ = false;
+  if (status.ok()) status = not_declared_;
+  if (status.ok() && !stumbled_) stumbles_ = 0;
+  return recover(status);
 }
 
 Status OpenXrHeadset::end(bool submitted) {
@@ -304,7 +345,7 @@ Status OpenXrHeadset::end(bool submitted) {
       whole = whole && projected_[i];
     }
     if (whole && !projected_.empty()) layers.push_back(parts_.views->layer(near_m_));
-    NERITIC_TRY(const auto panels, parts_.panels->finish(world_from_stage_));
+    NERITIC_TRY(const auto panels, parts_.panels->finish(world_from_stage_, layers.size()));
     layers.insert(layers.end(), panels.begin(), panels.end());
   } else {
     parts_.panels->drop();

@@ -165,8 +165,13 @@ Status Inputs::sync(DeviceState& state) {
   XrActionsSyncInfo info{XR_TYPE_ACTIONS_SYNC_INFO};
   info.countActiveActionSets = 1;
   info.activeActionSets = &active;
-  NERITIC_TRY_STATUS(
-      runtime_.check(runtime_.xr().SyncActions(session_.handle(), &info), "xrSyncActions"));
+  const XrResult synced = runtime_.xr().SyncActions(session_.handle(), &info);
+  NERITIC_TRY_STATUS(runtime_.check(synced, "xrSyncActions"));
+  if (synced == XR_SESSION_NOT_FOCUSED) {
+    // What is held meanwhile is meant for another program.
+    for (ControlAction& one : controls_) one.held = true;
+    return {};
+  }
   for (ControlAction& one : controls_) {
     XrActionStateGetInfo get{XR_TYPE_ACTION_STATE_GET_INFO};
     get.action = one.action;
@@ -175,7 +180,7 @@ Status Inputs::sync(DeviceState& state) {
         runtime_.check(runtime_.xr().GetActionStateFloat(session_.handle(), &get, &value),
                        "xrGetActionStateFloat"));
     const double now = value.isActive ? one.sign * double{value.currentState} : 0.0;
-    const bool held = now > kPressed;
+    const bool held = !value.isActive || now > kPressed;
     state.value[one.control] = now;
     if (held && !one.held) state.presses[one.control] = 1;
     one.held = held;

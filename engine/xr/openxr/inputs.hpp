@@ -30,7 +30,7 @@ class Inputs {
     XrAction action = XR_NULL_HANDLE;
     std::size_t control = 0;
     double sign = 1.0;
-    bool held = false;
+    bool held = true;  // or not known: a press counts only after it was seen released
   };
   Status create_actions();
   Status create_poses();

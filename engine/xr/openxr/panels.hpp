@@ -19,23 +19,29 @@ class Panels {
                                                 gpu::Device& device, Presenter& presenter);
   // Adds the pass that draws the panel's image, if it brings one.
   Status declare(graph::FrameGraph& graph, const PanelLayer& panel);
-  // Hands back the images of this frame's panels, and gives their layers in the order of declare.
-  // Valid until the next frame's declare.
-  Result<std::vector<const XrCompositionLayerBaseHeader*>> finish(const Pose& world_from_stage);
+  // The frame was submitted: hands back the images of its panels, and gives their layers in the
+  // order of declare. Valid until the next frame's declare. before: layers that the frame has
+  // already; where the runtime composes no more, the last panels are left out.
+  Result<std::vector<const XrCompositionLayerBaseHeader*>> finish(const Pose& world_from_stage,
+                                                                  std::size_t before);
   // Forgets this frame's panels, whose images were not drawn.
   void drop() { shown_.clear(); }
 
  private:
   Panels(Runtime& runtime, const Session& session, gpu::Device& device, Presenter& presenter)
       : runtime_(runtime), session_(session), device_(device), presenter_(presenter) {}
-  struct Shown {
-    PanelLayer panel;
-    Swapchain* chain = nullptr;
-  };
   struct Kept {
     std::unique_ptr<Swapchain> chain;
     bool drawn = false;  // has content
+    bool small = false;  // a note said that its picture is larger than the runtime's images
   };
+  struct Shown {
+    PanelLayer panel;
+    Kept* kept = nullptr;
+  };
+  // The size of the runtime's image for a picture of that size.
+  VkExtent2D fitted(const std::string& name, std::uint32_t width, std::uint32_t height, Kept& kept);
+  void leave_out(std::size_t before);
   Runtime& runtime_;
   const Session& session_;
   gpu::Device& device_;
@@ -43,6 +49,7 @@ class Panels {
   VkFormat format_ = VK_FORMAT_UNDEFINED;
   std::map<std::string, Kept> chains_;  // by panel
   std::vector<Shown> shown_;            // of this frame
+  std::string left_out_;                // as the last note named them
   const XrCompositionLayerBaseHeader* bent(const Shown& shown, XrSpace space, const Pose& pose);
   const XrCompositionLayerBaseHeader* flat(const Shown& shown, XrSpace space, const Pose& pose);
   // For this frame; their addresses are the runtime's until the frame has ended.

@@ -1,6 +1,7 @@
 #include "engine/xr/openxr/runtime.hpp"
 
 #include <cstring>
+#include <sstream>
 
 #include "engine/core/log.hpp"
 
@@ -16,6 +17,8 @@ struct Known {
 };
 constexpr Known kKnown[] = {
     {XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, "pictures by Vulkan (needed)", nullptr},
+    {XR_KHR_VULKAN_ENABLE_EXTENSION_NAME, "shown again after the runtime was away",
+     &Extensions::vulkan1},
     {XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME, "display times on the host's clock, exactly",
      &Extensions::timespec},
     {XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME,
@@ -59,6 +62,44 @@ bool layer_present(const Loader& loader) {
   return std::any_of(layers.begin(), layers.end(), [](const XrApiLayerProperties& layer) {
     return std::strcmp(layer.layerName, kValidationLayer) == 0;
   });
+}
+
+std::vector<std::string> offered_by_vulkan(VkPhysicalDevice device = VK_NULL_HANDLE) {
+  const auto ask = [&](std::uint32_t* count, VkExtensionProperties* items) {
+    return device ? vkEnumerateDeviceExtensionProperties(device, nullptr, count, items)
+                  : vkEnumerateInstanceExtensionProperties(nullptr, count, items);
+  };
+  std::uint32_t count = 0;
+  if (ask(&count, nullptr) != VK_SUCCESS) return {};
+  std::vector<VkExtensionProperties> found(count);
+  if (ask(&count, found.data()) < VK_SUCCESS) return {};
+  std::vector<std::string> names;
+  for (std::uint32_t i = 0; i < count; ++i) names.push_back(found[i].extensionName);
+  return names;
+}
+
+// Makes a Vulkan object with the extensions of `info` and those of the wished that are offered, or,
+// where that fails, without the latter. enabled: gets what it was made with.
+template <class Info, class Make>
+VkResult make_with_wished(const Info& info, const Result<std::vector<std::string>>& wished,
+                          const std::vector<std::string>& offered,
+                          std::vector<std::string>& enabled, const Make& make) {
+  const std::vector<std::string> own(info.ppEnabledExtensionNames,
+                                     info.ppEnabledExtensionNames + info.enabledExtensionCount);
+  enabled = own;
+  if (wished.ok())
+    for (const std::string& name : *wished)
+      if (contains(offered, name.c_str()) && !contains(enabled, name.c_str()))
+        enabled.push_back(name);
+  std::vector<const char*> names;
+  for (const std::string& name : enabled) names.push_back(name.c_str());
+  Info with = info;
+  with.enabledExtensionCount = static_cast<std::uint32_t>(names.size());
+  with.ppEnabledExtensionNames = names.data();
+  const VkResult made = make(with);
+  if (made == VK_SUCCESS || enabled.size() == own.size()) return made;
+  enabled = own;
+  return make(info);
 }
 
 XRAPI_ATTR XrBool32 XRAPI_CALL on_message(XrDebugUtilsMessageSeverityFlagsEXT,
@@ -164,9 +205,11 @@ Status Runtime::find_system() {
   XrSystemGetInfo get{XR_TYPE_SYSTEM_GET_INFO};
   get.formFactor = XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY;
   const XrResult found = xr_.GetSystem(instance_, &get, &system_);
-  if (XR_FAILED(found))
+  if (XR_FAILED(found)) {
+    (void)check(found, "xrGetSystem");  // keeps a loss
     return failure(ErrorCode::kNoDevice, "{} has no headset now ({})", info_.runtime,
                    name_of(found));
+  }
   XrSystemFoveatedRenderingPropertiesVARJO foveated{
       XR_TYPE_SYSTEM_FOVEATED_RENDERING_PROPERTIES_VARJO};
   XrSystemHandTrackingPropertiesEXT hands{XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT};
@@ -214,14 +257,23 @@ Status Runtime::check(XrResult result, const char* call) {
       lose(Loss::kSession);
       break;
     case XR_ERROR_INSTANCE_LOST:
-    case XR_ERROR_RUNTIME_FAILURE:
     case XR_ERROR_RUNTIME_UNAVAILABLE:
       lose(Loss::kInstance);
+      break;
+    case XR_ERROR_RUNTIME_FAILURE:
+      failed_ = true;
       break;
     default:
       break;
   }
   return failure(ErrorCode::kDeviceLost, "{}: {}: {}", info_.runtime, call, name_of(result));
+}
+
+bool Runtime::goes_without(const Error& error, std::string_view without) {
+  if (loss_ != Loss::kNone) return false;
+  failed_ = false;
+  log_warn("{}: {}", error.message, without);
+  return true;
 }
 
 TimeNs Runtime::to_host(XrTime time) const {
@@ -240,16 +292,40 @@ void Runtime::note_frame(XrTime display_at, XrDuration period) {
   clocks_met_ = true;
 }
 
-VkResult Runtime::make_instance(const VkInstanceCreateInfo& info, VkInstance* instance) {
-  XrVulkanInstanceCreateInfoKHR create{XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR};
-  create.systemId = system_;
-  create.pfnGetInstanceProcAddr = vkGetInstanceProcAddr;
-  create.vulkanCreateInfo = &info;
-  VkResult vulkan = VK_SUCCESS;
-  const XrResult result = xr_.CreateVulkanInstanceKHR(instance_, &create, instance, &vulkan);
-  if (XR_SUCCEEDED(result)) return vulkan;
-  log_info("{}: xrCreateVulkanInstanceKHR: {}", info_.runtime, name_of(result));
-  return VK_ERROR_INITIALIZATION_FAILED;
+// The extensions of Vulkan that XR_KHR_vulkan_enable wants of a device or an instance.
+Result<std::vector<std::string>> Runtime::wanted_by_version1(bool device) {
+  const auto ask = device ? xr_.GetVulkanDeviceExtensionsKHR : xr_.GetVulkanInstanceExtensionsKHR;
+  if (!has_.vulkan1 || !ask) return std::vector<std::string>{};
+  std::vector<char> text;
+  const XrResult result = enumerate(text, '\0', [&](auto capacity, auto count, auto items) {
+    return ask(instance_, system_, capacity, count, items);
+  });
+  NERITIC_TRY_STATUS(check(
+      result, device ? "xrGetVulkanDeviceExtensionsKHR" : "xrGetVulkanInstanceExtensionsKHR"));
+  text.push_back('\0');
+  std::vector<std::string> names;
+  std::istringstream words(text.data());
+  for (std::string name; words >> name;) names.push_back(name);
+  return names;
+}
+
+VkResult Runtime::make_instance(const VkInstanceCreateInfo& info, VkInstance* instance,
+                                EnabledVulkan& enabled) {
+  const auto make = [&](const VkInstanceCreateInfo& with) {
+    XrVulkanInstanceCreateInfoKHR create{XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR};
+    create.systemId = system_;
+    create.pfnGetInstanceProcAddr = vkGetInstanceProcAddr;
+    create.vulkanCreateInfo = &with;
+    VkResult vulkan = VK_SUCCESS;
+    const XrResult result = xr_.CreateVulkanInstanceKHR(instance_, &create, instance, &vulkan);
+    if (XR_SUCCEEDED(result)) return vulkan;
+    log_info("{}: xrCreateVulkanInstanceKHR: {}", info_.runtime, name_of(result));
+    return VK_ERROR_INITIALIZATION_FAILED;
+  };
+  const VkResult made = make_with_wished(info, wanted_by_version1(false), offered_by_vulkan(),
+                                         enabled.instance, make);
+  made_ = made == VK_SUCCESS ? *instance : VK_NULL_HANDLE;
+  return made;
 }
 
 VkResult Runtime::find_physical(VkInstance instance, VkPhysicalDevice* device) {
@@ -263,25 +339,63 @@ VkResult Runtime::find_physical(VkInstance instance, VkPhysicalDevice* device) {
 }
 
 VkResult Runtime::make_device(VkPhysicalDevice physical, const VkDeviceCreateInfo& info,
-                              VkDevice* device) {
-  XrVulkanDeviceCreateInfoKHR create{XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR};
-  create.systemId = system_;
-  create.pfnGetInstanceProcAddr = vkGetInstanceProcAddr;
-  create.vulkanPhysicalDevice = physical;
-  create.vulkanCreateInfo = &info;
-  VkResult vulkan = VK_SUCCESS;
-  const XrResult result = xr_.CreateVulkanDeviceKHR(instance_, &create, device, &vulkan);
-  if (XR_SUCCEEDED(result)) return vulkan;
-  log_info("{}: xrCreateVulkanDeviceKHR: {}", info_.runtime, name_of(result));
-  return VK_ERROR_INITIALIZATION_FAILED;
+                              VkDevice* device, EnabledVulkan& enabled) {
+  const auto make = [&](const VkDeviceCreateInfo& with) {
+    XrVulkanDeviceCreateInfoKHR create{XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR};
+    create.systemId = system_;
+    create.pfnGetInstanceProcAddr = vkGetInstanceProcAddr;
+    create.vulkanPhysicalDevice = physical;
+    create.vulkanCreateInfo = &with;
+    VkResult vulkan = VK_SUCCESS;
+    const XrResult result = xr_.CreateVulkanDeviceKHR(instance_, &create, device, &vulkan);
+    if (XR_SUCCEEDED(result)) return vulkan;
+    log_info("{}: xrCreateVulkanDeviceKHR: {}", info_.runtime, name_of(result));
+    return VK_ERROR_INITIALIZATION_FAILED;
+  };
+  return make_with_wished(info, wanted_by_version1(true), offered_by_vulkan(physical),
+                          enabled.device, make);
 }
 
-Status Runtime::check_device(const gpu::Device& device) {
+Status Runtime::check_device(const gpu::Device& device, const EnabledVulkan& enabled) {
   VkPhysicalDevice physical = VK_NULL_HANDLE;
-  if (find_physical(device.instance(), &physical) != VK_SUCCESS || physical != device.physical())
+  if (made_ == device.instance()) {
+    XrVulkanGraphicsDeviceGetInfoKHR get{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR};
+    get.systemId = system_;
+    get.vulkanInstance = made_;
+    NERITIC_TRY_STATUS(check(xr_.GetVulkanGraphicsDevice2KHR(instance_, &get, &physical),
+                             "xrGetVulkanGraphicsDevice2KHR"));
+  } else {
+    NERITIC_TRY_STATUS(check_version1(device, enabled));
+    NERITIC_TRY_STATUS(
+        check(xr_.GetVulkanGraphicsDeviceKHR(instance_, system_, device.instance(), &physical),
+              "xrGetVulkanGraphicsDeviceKHR"));
+  }
+  if (physical != device.physical())
     return failure(ErrorCode::kUnsupported,
                    "{} came back on another graphics device than {}: start the dive again",
                    info_.runtime, device.info().name);
+  return {};
+}
+
+// Whether the runtime takes a device that it did not make, and this one.
+Status Runtime::check_version1(const gpu::Device& device, const EnabledVulkan& enabled) {
+  if (!has_.vulkan1 || !xr_.GetVulkanGraphicsRequirementsKHR || !xr_.GetVulkanGraphicsDeviceKHR)
+    return failure(ErrorCode::kUnsupported,
+                   "{} came back without {}, so that it takes no graphics device but one that it "
+                   "makes anew: start the dive again",
+                   info_.runtime, XR_KHR_VULKAN_ENABLE_EXTENSION_NAME);
+  XrGraphicsRequirementsVulkanKHR needs{XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN_KHR};
+  NERITIC_TRY_STATUS(check(xr_.GetVulkanGraphicsRequirementsKHR(instance_, system_, &needs),
+                           "xrGetVulkanGraphicsRequirementsKHR"));
+  for (const bool of_device : {false, true}) {
+    NERITIC_TRY(const auto wanted, wanted_by_version1(of_device));
+    for (const std::string& name : wanted)
+      if (!contains(of_device ? enabled.device : enabled.instance, name.c_str()))
+        return failure(ErrorCode::kUnsupported,
+                       "{} came back and needs Vulkan's {}, without which this dive began on {}: "
+                       "start the dive again",
+                       info_.runtime, name, device.info().name);
+  }
   return {};
 }
 

@@ -21,7 +21,10 @@ Result<std::unique_ptr<Session>> Session::create(Runtime& runtime, const gpu::De
   NERITIC_TRY_STATUS(runtime.check(
       runtime.xr().CreateSession(runtime.instance(), &info, &session->handle_), "xrCreateSession"));
   NERITIC_TRY_STATUS(session->create_spaces(options.room));
-  if (options.refresh_hz > 0.0) NERITIC_TRY_STATUS(session->set_refresh_rate(options.refresh_hz));
+  if (options.refresh_hz > 0.0)
+    if (const Status set = session->set_refresh_rate(options.refresh_hz);
+        !set.ok() && !runtime.goes_without(set.error(), "the display keeps its own rate"))
+      return set.error();
   return session;
 }
 

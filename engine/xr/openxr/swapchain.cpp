@@ -77,9 +77,11 @@ Swapchain::~Swapchain() {
 Result<const gpu::Image*> Swapchain::acquire() {
   if (acquired_) return &images_[current_];
   XrSwapchainImageAcquireInfo acquire{XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO};
-  NERITIC_TRY_STATUS(
-      runtime_.check(runtime_.xr().AcquireSwapchainImage(handle_, &acquire, &current_),
-                     "xrAcquireSwapchainImage"));
+  if (!waits_)
+    NERITIC_TRY_STATUS(
+        runtime_.check(runtime_.xr().AcquireSwapchainImage(handle_, &acquire, &current_),
+                       "xrAcquireSwapchainImage"));
+  waits_ = true;
   if (current_ >= images_.size())
     return failure(ErrorCode::kDeviceLost, "{}: xrAcquireSwapchainImage gave image {} of {}",
                    runtime_.info().runtime, current_, images_.size());
@@ -91,15 +93,18 @@ Result<const gpu::Image*> Swapchain::acquire() {
     waited = runtime_.xr().WaitSwapchainImage(handle_, &wait);
   if (waited == XR_TIMEOUT_EXPIRED) waited = XR_ERROR_RUNTIME_FAILURE;
   NERITIC_TRY_STATUS(runtime_.check(waited, "xrWaitSwapchainImage"));
+  waits_ = false;
   acquired_ = true;
   return &images_[current_];
 }
 
 Status Swapchain::release() {
-  if (!std::exchange(acquired_, false)) return {};
+  if (!acquired_) return {};
   XrSwapchainImageReleaseInfo info{XR_TYPE_SWAPCHAIN_IMAGE_RELEASE_INFO};
-  return runtime_.check(runtime_.xr().ReleaseSwapchainImage(handle_, &info),
-                        "xrReleaseSwapchainImage");
+  NERITIC_TRY_STATUS(runtime_.check(runtime_.xr().ReleaseSwapchainImage(handle_, &info),
+                                    "xrReleaseSwapchainImage"));
+  acquired_ = false;
+  return {};
 }
 
 XrSwapchainSubImage Swapchain::sub_image(std::uint32_t layer) const {

@@ -43,6 +43,7 @@ class Swapchain {
   std::vector<gpu::Image> images_;
   std::uint32_t current_ = 0;
   bool acquired_ = false;
+  bool waits_ = false;  // acquired, but the runtime may still read it
 };
 
 // The formats that the runtime offers, best first as it says.

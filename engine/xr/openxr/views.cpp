@@ -6,14 +6,21 @@
 #include "engine/core/log.hpp"
 
 namespace neritic::xr::openxr {
+namespace {
+
+// Of a standing adult of 1.7 m.
+constexpr double kEyes_m = 1.6;
+
+}  // namespace
 
 Result<std::unique_ptr<Views>> Views::create(Runtime& runtime, const Session& session,
                                              gpu::Device& device, bool pictures) {
   std::unique_ptr<Views> views(new Views(runtime, session));
   NERITIC_TRY_STATUS(views->choose_configuration());
   NERITIC_TRY_STATUS(views->choose_blend_mode());
-  NERITIC_TRY(const auto sizes, views->sizes());
   views->foveated_ = views->foveated_ && pictures;
+  NERITIC_TRY_STATUS(views->make_eyes());
+  NERITIC_TRY(const auto sizes, views->sizes());
   if (pictures) NERITIC_TRY_STATUS(views->make_swapchains(device, sizes));
   views->views_.assign(sizes.size(), {XR_TYPE_VIEW});
   for (XrView& view : views->views_) view.pose = to_xr({});
@@ -61,6 +68,22 @@ Status Views::choose_blend_mode() {
   return {};
 }
 
+// The space by which the sharp views follow the gaze.
+Status Views::make_eyes() {
+  if (!foveated_) return {};
+  XrReferenceSpaceCreateInfo info{XR_TYPE_REFERENCE_SPACE_CREATE_INFO};
+  info.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_COMBINED_EYE_VARJO;
+  info.poseInReferenceSpace = to_xr({});
+  const Status made =
+      runtime_.check(runtime_.xr().CreateReferenceSpace(session_.handle(), &info, &eyes_),
+                     "xrCreateReferenceSpace");
+  if (made.ok()) return {};
+  if (!runtime_.goes_without(made.error(), "the sharp views stay in the middle"))
+    return made.error();
+  foveated_ = false;
+  return {};
+}
+
 Result<std::vector<XrViewConfigurationView>> Views::sizes() {
   XrFoveatedViewConfigurationViewVARJO foveated{XR_TYPE_FOVEATED_VIEW_CONFIGURATION_VIEW_VARJO};
   foveated.foveatedRenderingActive = XR_TRUE;
@@ -84,15 +107,7 @@ Result<std::vector<XrViewConfigurationView>> Views::sizes() {
 Status Views::make_swapchains(gpu::Device& device, std::span<const XrViewConfigurationView> sizes) {
   NERITIC_TRY(const auto formats, swapchain_formats(runtime_, session_.handle()));
   NERITIC_TRY(const VkFormat color, choose_color(formats));
-  const VkFormat depth = runtime_.has().depth ? choose_depth(formats) : VK_FORMAT_UNDEFINED;
-  if (foveated_) {
-    XrReferenceSpaceCreateInfo info{XR_TYPE_REFERENCE_SPACE_CREATE_INFO};
-    info.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_COMBINED_EYE_VARJO;
-    info.poseInReferenceSpace = to_xr({});
-    NERITIC_TRY_STATUS(
-        runtime_.check(runtime_.xr().CreateReferenceSpace(session_.handle(), &info, &eyes_),
-                       "xrCreateReferenceSpace"));
-  }
+  VkFormat depth = runtime_.has().depth ? choose_depth(formats) : VK_FORMAT_UNDEFINED;
   // The views of a pair share one image: its size is the larger of the two.
   for (std::size_t first = 0; first < sizes.size(); first += 2) {
     Group group{.first = first, .count = std::min<std::size_t>(2, sizes.size() - first)};
@@ -115,7 +130,13 @@ Status Views::make_swapchains(gpu::Device& device, std::span<const XrViewConfigu
       desc.format = depth;
       desc.usage = XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
                    XR_SWAPCHAIN_USAGE_SAMPLED_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT;
-      NERITIC_TRY(group.depth, Swapchain::create(runtime_, session_.handle(), device, desc));
+      auto made = Swapchain::create(runtime_, session_.handle(), device, desc);
+      if (made.ok())
+        group.depth = std::move(made).value();
+      else if (!runtime_.goes_without(made.error(), "the pictures go without their depth"))
+        return made.error();
+      else
+        depth = VK_FORMAT_UNDEFINED;
     }
     groups_.push_back(std::move(group));
   }
@@ -160,27 +181,57 @@ Result<bool> Views::locate(XrTime at) {
   XrSpaceLocation head{XR_TYPE_SPACE_LOCATION};
   NERITIC_TRY_STATUS(runtime_.check(
       runtime_.xr().LocateSpace(session_.head(), session_.stage(), at, &head), "xrLocateSpace"));
+  std::vector<XrView> found;
+  NERITIC_TRY(const XrViewStateFlags state, locate_in(session_.stage(), at, found));
+  if (!(state & XR_VIEW_STATE_ORIENTATION_VALID_BIT) ||
+      !(head.locationFlags & XR_SPACE_LOCATION_ORIENTATION_VALID_BIT))
+    return false;
+  if ((state & XR_VIEW_STATE_POSITION_VALID_BIT) &&
+      (head.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT)) {
+    views_ = std::move(found);
+    stage_from_head_ = to_pose(head.pose);
+    last_m_ = stage_from_head_.position_m;
+    return true;
+  }
+  // The eyes in the head are known wherever that is.
+  NERITIC_TRY(const XrViewStateFlags in_head, locate_in(session_.head(), at, found));
+  constexpr XrViewStateFlags kWhole =
+      XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_POSITION_VALID_BIT;
+  const Pose before = stage_from_head_;
+  head.pose.position = {0.0f, 0.0f, 0.0f};
+  stage_from_head_ = {last_m_.value_or(standing_eyes_m()), to_pose(head.pose).rotation};
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    // Else as they were in the head.
+    const Pose head_from_view = (in_head & kWhole) == kWhole
+                                    ? to_pose(found[i].pose)
+                                    : inverse(before) * to_pose(views_[i].pose);
+    found[i].pose = to_xr(stage_from_head_ * head_from_view);
+  }
+  views_ = std::move(found);
+  return true;
+}
+
+// In the room above its floor; else the origin is where the head was.
+Vec3 Views::standing_eyes_m() const {
+  return {0.0, session_.in_room() ? kEyes_m : 0.0, 0.0};
+}
+
+Result<XrViewStateFlags> Views::locate_in(XrSpace space, XrTime at,
+                                          std::vector<XrView>& found) const {
   XrViewLocateFoveatedRenderingVARJO foveated{XR_TYPE_VIEW_LOCATE_FOVEATED_RENDERING_VARJO};
   foveated.foveatedRenderingActive = gaze_ready(at) ? XR_TRUE : XR_FALSE;
   XrViewLocateInfo info{XR_TYPE_VIEW_LOCATE_INFO, foveated_ ? &foveated : nullptr};
   info.viewConfigurationType = configuration_;
   info.displayTime = at;
-  info.space = session_.stage();
+  info.space = space;
   XrViewState state{XR_TYPE_VIEW_STATE};
-  std::vector<XrView> found(views_.size(), {XR_TYPE_VIEW});
+  found.assign(views_.size(), {XR_TYPE_VIEW});
   std::uint32_t count = 0;
   NERITIC_TRY_STATUS(runtime_.check(
       runtime_.xr().LocateViews(session_.handle(), &info, &state,
                                 static_cast<std::uint32_t>(found.size()), &count, found.data()),
       "xrLocateViews"));
-  const bool known = (state.viewStateFlags & XR_VIEW_STATE_ORIENTATION_VALID_BIT) &&
-                     (state.viewStateFlags & XR_VIEW_STATE_POSITION_VALID_BIT) &&
-                     (head.locationFlags & XR_SPACE_LOCATION_ORIENTATION_VALID_BIT) &&
-                     (head.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT);
-  if (!known || count != views_.size()) return false;
-  views_ = std::move(found);
-  stage_from_head_ = to_pose(head.pose);
-  return true;
+  return count == found.size() ? state.viewStateFlags : XrViewStateFlags{0};
 }
 
 std::vector<ViewGroup> Views::groups() const {

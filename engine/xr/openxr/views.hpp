@@ -20,7 +20,9 @@ class Views {
   XrViewConfigurationType configuration() const { return configuration_; }
   XrEnvironmentBlendMode blend_mode() const { return blend_mode_; }
 
-  // Where head and views are at that time. False: the runtime does not know how the head is turned.
+  // Where head and views are at that time; where the runtime knows how the head is turned but not
+  // where it is, at the last known place, else at that of a standing person. False: it does not
+  // know how the head is turned.
   Result<bool> locate(XrTime at);
   const Pose& stage_from_head() const { return stage_from_head_; }
   // Sizes, poses and frusta of the newest locate.
@@ -42,6 +44,9 @@ class Views {
   Status choose_blend_mode();
   Result<std::vector<XrViewConfigurationView>> sizes();
   Status make_swapchains(gpu::Device& device, std::span<const XrViewConfigurationView> sizes);
+  Status make_eyes();
+  Vec3 standing_eyes_m() const;
+  Result<XrViewStateFlags> locate_in(XrSpace space, XrTime at, std::vector<XrView>& found) const;
   bool gaze_ready(XrTime at) const;
   Runtime& runtime_;
   const Session& session_;
@@ -53,6 +58,7 @@ class Views {
   std::vector<std::vector<Vec2f>> hidden_;  // by view (xr::View)
   std::vector<XrView> views_;
   Pose stage_from_head_;
+  std::optional<Vec3> last_m_;  // of the head, as last known
   XrCompositionLayerProjection layer_{XR_TYPE_COMPOSITION_LAYER_PROJECTION};
   std::vector<XrCompositionLayerProjectionView> layer_views_;
   std::vector<XrCompositionLayerDepthInfoKHR> layer_depths_;

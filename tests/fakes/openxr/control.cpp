@@ -53,6 +53,7 @@ NERITIC_EXPORT void neritic_fake_xr_reset() {
   rt.now = neritic::fakes::kEpoch;
   rt.host_epoch_ns = 0;
   rt.faults.clear();
+  rt.made_vulkan.clear();
   rt.log.clear();
 }
 

@@ -64,6 +64,10 @@ bool perform_on(Session& session, const std::string& what, std::istringstream& w
       {"loss_pending", XR_SESSION_STATE_LOSS_PENDING}};
   if (const auto state = states.find(what); state != states.end()) {
     change_state(session, state->second);
+    // The system is unplugged: the one of xrGetSystem is not valid any more.
+    if (what == "loss_pending")
+      session.instance.has_system = session.instance.asked_requirements =
+          session.instance.asked_requirements2 = false;
     if (what == "stop") words >> session.wake_after_polls;
   } else if (what == "exit") {
     session.exit_requested = true;

@@ -15,6 +15,7 @@ struct OfferedExtension {
 };
 constexpr OfferedExtension kExtensions[] = {
     {XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, XR_KHR_vulkan_enable2_SPEC_VERSION},
+    {XR_KHR_VULKAN_ENABLE_EXTENSION_NAME, XR_KHR_vulkan_enable_SPEC_VERSION},
     {XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME, XR_KHR_composition_layer_depth_SPEC_VERSION},
     {XR_KHR_COMPOSITION_LAYER_CYLINDER_EXTENSION_NAME,
      XR_KHR_composition_layer_cylinder_SPEC_VERSION},

@@ -31,7 +31,8 @@ struct Instance : Object {
   std::vector<std::string> paths;  // XrPath is the index + 1
   std::deque<XrEventDataBuffer> events;
   bool lost = false;
-  bool has_system = false, asked_requirements = false;
+  bool has_system = false;
+  bool asked_requirements = false, asked_requirements2 = false;  // by version of vulkan_enable
   VulkanObjects vulkan;
   std::map<std::string, std::map<std::uint64_t, std::vector<std::string>>> suggested;  // by profile
 };

@@ -56,6 +56,18 @@ void Call::fault(XrResult result, const std::string& sentence) {
   throw Refused{result};
 }
 
+void Call::fail_by_script() {
+  const auto found = rt.script.failures.find(function);
+  if (found == rt.script.failures.end()) return;
+  ScriptedFailure& failure = found->second;
+  if (failure.after > 0) {
+    --failure.after;
+  } else if (failure.times > 0) {
+    --failure.times;
+    refuse(failure.result);
+  }
+}
+
 Instance& Call::instance() {
   Instance* found = rt.instance();
   require(found, XR_ERROR_HANDLE_INVALID, "there is no instance");

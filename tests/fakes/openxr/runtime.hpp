@@ -3,6 +3,7 @@
 // the lock and knows the function's name, which begins the sentence of each fault.
 #pragma once
 
+#include <cmath>
 #include <condition_variable>
 #include <functional>
 #include <map>
@@ -31,6 +32,9 @@ struct Runtime {
   std::vector<std::string> log;  // one line for each frame that ended
   std::map<std::uint64_t, std::unique_ptr<Object>> objects;
   std::map<std::uint64_t, XrObjectType> destroyed;
+  // All that xrCreateVulkanInstanceKHR and xrCreateVulkanDeviceKHR made in this process, newest
+  // last: they outlive the instance of OpenXR.
+  std::vector<VulkanObjects> made_vulkan;
   std::uint64_t next_handle = 0x5EA0000000000001;
 
   double seconds(XrTime time) const { return static_cast<double>(time - kEpoch) * 1e-9; }
@@ -62,6 +66,8 @@ class Call {
   [[noreturn]] void fault(XrResult result, const std::string& sentence);
   // Only records; the call goes on.
   void note_fault(const std::string& sentence);
+  // Ends the call where the script's `fails` says so.
+  void fail_by_script();
   // Ends the call by what the specification lets happen to a correct client.
   [[noreturn]] void refuse(XrResult result) { throw Refused{result}; }
   void require(bool fine, XrResult result, const std::string& sentence) {
@@ -162,6 +168,7 @@ template <auto kFunction, class... Arguments>
 XrResult XRAPI_CALL entry(Arguments... arguments) {
   try {
     Call call(runtime(), function_name<kFunction>);
+    call.fail_by_script();
     return kFunction(call, arguments...);
   } catch (const Refused& refused) {
     return refused.result;
@@ -216,6 +223,8 @@ struct Located {
   XrTime sample_time = 0;  // of a gaze
 };
 Located locate(Runtime& runtime, const Space& space, XrTime time);
+// What stands in a pose whose position is not valid: a client must not read it.
+inline constexpr XrVector3f kUnknown{NAN, NAN, NAN};
 Located locate_view_space(Runtime& runtime, XrTime time);
 Located locate_action(Runtime& runtime, const Space& space, XrTime time);
 // At the last sample of the eye tracker that there is for the time: it predicts nothing.

@@ -99,6 +99,20 @@ Reader text_to(std::string Script::*member) {
   return [member](Words& words, Script& script) { script.*member = words.rest(); };
 }
 
+Reader names_to(std::set<std::string> Script::*member) {
+  return [member](Words& words, Script& script) {
+    (script.*member).clear();
+    while (words.more()) (script.*member).insert(words.word());
+  };
+}
+
+Reader steps_to(StepTrack<bool> Script::*member) {
+  return [member](Words& words, Script& script) {
+    const double time = words.number();
+    (script.*member).set(time, words.yes());
+  };
+}
+
 // Keys of what the headset is.
 void add_system(std::map<std::string, Reader>& keys) {
   keys["name"] = text_to(&Script::name);
@@ -128,6 +142,8 @@ void add_system(std::map<std::string, Reader>& keys) {
   keys["without"] = [](Words& words, Script& script) {
     while (words.more()) script.without.insert(words.word());
   };
+  keys["vulkan_instance_extensions"] = names_to(&Script::vulkan_instance);
+  keys["vulkan_device_extensions"] = names_to(&Script::vulkan_device);
   keys["stage"] = yes_to(&Script::stage);
   keys["local"] = [](Words& words, Script& script) { script.local = words.pose(); };
   keys["refresh_rates"] = [](Words& words, Script& script) {
@@ -150,10 +166,9 @@ void add_person(std::map<std::string, Reader>& keys) {
     const double time = words.number();
     script.head.set(time, words.pose());
   };
-  keys["tracked"] = [](Words& words, Script& script) {
-    const double time = words.number();
-    script.tracked.set(time, words.yes());
-  };
+  keys["tracked"] = steps_to(&Script::tracked);
+  keys["oriented"] = steps_to(&Script::oriented);
+  keys["positioned"] = steps_to(&Script::positioned);
   keys["hand"] = [](Words& words, Script& script) {
     PoseTrack& hand = script.hands[words.side()];
     const double time = words.number();
@@ -199,6 +214,11 @@ void add_run(std::map<std::string, Reader>& keys) {
   };
   keys["main_visible"] = yes_to(&Script::main_visible);
   keys["report"] = text_to(&Script::report);
+  keys["fails"] = [](Words& words, Script& script) {
+    ScriptedFailure& failure = script.failures[words.word()];
+    failure = {.times = static_cast<int>(words.number())};
+    if (words.more()) failure.after = static_cast<int>(words.number());
+  };
   keys["frame"] = [](Words& words, Script& script) {
     const auto frame = static_cast<std::uint64_t>(words.number());
     script.timed.push_back({frame, words.rest()});

@@ -27,6 +27,12 @@ struct Controller {
   std::string profile;  // "" while it is switched off
 };
 
+// Calls of a function that fail although the client is correct.
+struct ScriptedFailure {
+  int times = 0, after = 0;  // after so many that do not fail
+  XrResult result = XR_ERROR_RUNTIME_FAILURE;
+};
+
 struct Script {
   // The system.
   bool available = true;      // xrCreateInstance answers
@@ -44,6 +50,10 @@ struct Script {
       VK_FORMAT_D32_SFLOAT,     VK_FORMAT_D16_UNORM};  // VkFormat, best first
   std::uint32_t swapchain_length = 3, max_layers = 16, max_array = 4;
   std::set<std::string> without;  // extensions that are not offered
+  // Those of Vulkan that XR_KHR_vulkan_enable wants.
+  std::set<std::string> vulkan_instance{"VK_KHR_external_memory_capabilities"};
+  std::set<std::string> vulkan_device{"VK_KHR_dedicated_allocation",
+                                      "VK_KHR_get_memory_requirements2"};
   bool stage = true;
   std::string name = "Neritic fake headset";
   std::vector<float> refresh_rates{72, 90, 120};
@@ -62,6 +72,7 @@ struct Script {
   std::string gamepad;                                             // profile, "" without one
   std::map<std::string, StepTrack<std::array<double, 2>>> inputs;  // by path
   StepTrack<bool> tracked;                                         // the head's pose
+  StepTrack<bool> oriented, positioned;                            // whether it is known at all
   Pose local{{0, 1.6, 0}, {1, 0, 0, 0}};  // of LOCAL's origin on the stage's floor
   // Pictures.
   std::string out;                     // folder of the composed pictures, "" for none
@@ -71,6 +82,7 @@ struct Script {
   int image_timeouts = 0;    // how often xrWaitSwapchainImage runs out of its time
   std::string report;        // file that gets a line for each fault
   std::deque<TimedLine> timed;
+  std::map<std::string, ScriptedFailure> failures;  // by function
 };
 
 // Applies the lines of text. The first line that is not understood, with its number; else nothing.

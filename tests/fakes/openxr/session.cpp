@@ -15,10 +15,19 @@ void check_alone(Call& call, bool overlay) {
   }
 }
 
+// XR_KHR_vulkan_enable: the device of xrGetVulkanGraphicsDeviceKHR, with the extensions that the
+// runtime wants.
+void check_client_device(Call& call, const VulkanObjects& vulkan) {
+  for (const std::string& name : call.rt.script.vulkan_device)
+    call.require(vulkan.device_extensions.contains(name), XR_ERROR_GRAPHICS_DEVICE_INVALID,
+                 "the binding's device lacks " + name + " of xrGetVulkanDeviceExtensionsKHR");
+}
+
 void check_binding(Call& call, const VulkanObjects& vulkan,
                    const XrGraphicsBindingVulkanKHR* binding) {
   const auto invalid = XR_ERROR_GRAPHICS_DEVICE_INVALID;
   call.require(binding, invalid, "no XrGraphicsBindingVulkan2KHR stands in the next chain");
+  if (vulkan.by_client) check_client_device(call, vulkan);
   call.require(binding->instance && binding->instance == vulkan.instance, invalid,
                "the binding's instance is not the one that xrCreateVulkanInstanceKHR made");
   call.require(binding->physicalDevice == vulkan.physical, invalid,
@@ -41,8 +50,11 @@ XrResult create_session(Call& call, XrInstance handle, const XrSessionCreateInfo
   call.require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "createFlags is not 0");
   call.require(instance.has_system && info.systemId == kSystem, XR_ERROR_SYSTEM_INVALID,
                "the system was not got by xrGetSystem");
-  call.require(instance.asked_requirements, XR_ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING,
-               "xrGetVulkanGraphicsRequirements2KHR was not called before");
+  const bool by_client = instance.vulkan.by_client;
+  call.require(by_client ? instance.asked_requirements : instance.asked_requirements2,
+               XR_ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING,
+               fmt::format("xrGetVulkanGraphicsRequirements{}KHR was not called before",
+                           by_client ? "" : "2"));
   const auto* binding = Call::chained<XrGraphicsBindingVulkanKHR>(info.next);
   check_binding(call, instance.vulkan, binding);
   const auto* overlay = Call::chained<XrSessionCreateInfoOverlayEXTX>(info.next);

@@ -102,6 +102,8 @@ XrResult locate_space(Call& call, XrSpace handle, XrSpace base_handle, XrTime ti
   to.locationFlags |= XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
   if (there.positioned && from.positioned) {
     to.locationFlags |= XR_SPACE_LOCATION_POSITION_VALID_BIT;
+  } else {
+    to.pose.position = kUnknown;
   }
   if (there.tracked && from.tracked) {
     to.locationFlags |=
@@ -120,7 +122,10 @@ Located locate_view_space(Runtime& rt, XrTime time) {
   // Without tracking the pose of the moment it was lost is still given, as not tracked.
   if (tracked && !*tracked)
     return {rt.script.head.at(rt.script.tracked.since(time_s)), true, true, false};
-  return {head};
+  const bool *oriented = rt.script.oriented.at(time_s),
+             *positioned = rt.script.positioned.at(time_s);
+  const bool turned = !oriented || *oriented, placed = !positioned || *positioned;
+  return {head, turned, placed, turned && placed};
 }
 
 Located locate_gaze(Runtime& rt, XrTime time) {

@@ -118,13 +118,17 @@ XrResult locate_views(Call& call, XrSession handle, const XrViewLocateInfo* loca
     gaze = script.gaze.at(time_s).rotation;
   }
   session.foveated = gaze.has_value();
-  const Located head = locate_view_space(call.rt, info.displayTime);
+  Located head = locate_view_space(call.rt, info.displayTime);
+  // The eyes are always known from the head itself.
+  if (base.reference == XR_REFERENCE_SPACE_TYPE_VIEW) head.oriented = head.positioned = true;
   const Pose base_from_head = inverse(locate(call.rt, base, info.displayTime).pose) * head.pose;
   const auto found = views_in_head(script, info.viewConfigurationType, gaze);
   for (std::uint32_t i = 0; i < there; ++i) {
     XrView& to = call.out(views + i);
     to.pose = to_xr(base_from_head * from_xr(found[i].pose));
     to.fov = found[i].fov;
+    if (!head.oriented) to.pose.orientation = {NAN, NAN, NAN, NAN};
+    if (!head.positioned) to.pose.position = kUnknown;
   }
   state->viewStateFlags = 0;
   if (head.oriented) state->viewStateFlags |= XR_VIEW_STATE_ORIENTATION_VALID_BIT;

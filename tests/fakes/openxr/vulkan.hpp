@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,10 +14,12 @@ namespace neritic::fakes {
 struct VulkanObjects {
   PFN_vkGetInstanceProcAddr get = nullptr;
   VkInstance instance = VK_NULL_HANDLE;
-  VkPhysicalDevice physical = VK_NULL_HANDLE;  // as xrGetVulkanGraphicsDevice2KHR answered
+  VkPhysicalDevice physical = VK_NULL_HANDLE;  // as xrGetVulkanGraphicsDevice[2]KHR answered
   VkDevice device = VK_NULL_HANDLE;            // as xrCreateVulkanDeviceKHR made it
   std::vector<std::uint32_t> queue_families;   // that the device was made with
+  std::set<std::string> instance_extensions, device_extensions;  // that were enabled
   bool debug_utils = false;
+  bool by_client = false;  // made without this instance's help, as XR_KHR_vulkan_enable has it
 };
 
 // The calls of the runtime on the client's device. Made with a session, destroyed with it.

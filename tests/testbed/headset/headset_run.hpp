@@ -28,6 +28,7 @@ class HeadsetRun : public ::testing::Test {
     std::unique_ptr<gpu::Device> device;  // outlives the headset
     NERITIC_TRY(const auto headset,
                 xr::Headset::connect({.room = scene.world_from_lab.has_value(),
+                                      .refresh_hz = refresh_hz_,
                                       .actions = dive_actions(),
                                       .validation = layer_ && fakes::CoreValidation::installed()}));
     gpu::DeviceOptions options;
@@ -42,6 +43,7 @@ class HeadsetRun : public ::testing::Test {
   // The layer (1.0.20) breaks rules itself where an instance is refused.
   void without_layer() { layer_ = false; }
   void without_validation() { validation_ = false; }
+  void ask_for_rate(double hz) { refresh_hz_ = hz; }
   // In lock-step with the pictures; outlives the dive.
   void with(LivePhysics& physics) { physics_ = &physics; }
   void with(DiveHudOptions hud) { hud_ = std::move(hud); }
@@ -95,7 +97,7 @@ class HeadsetRun : public ::testing::Test {
   LivePhysics* physics_ = nullptr;
   std::optional<DiveHudOptions> hud_;
   SampleSource* source_ = nullptr;
-  double seconds_ = 0.0;
+  double seconds_ = 0.0, refresh_hz_ = 0.0;
   bool layer_ = true, validation_ = true, governed_ = false;
 };
 

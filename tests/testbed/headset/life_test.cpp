@@ -73,6 +73,110 @@ TEST_F(HeadsetLife, TheDiveGoesOnUnseenWhileTheRuntimeIsAway) {
   EXPECT_GE(shown(), 2u);
 }
 
+// The runtime comes back as another instance, which did not make the dive's graphics device.
+TEST_F(HeadsetLife, ARuntimeThatComesBackShowsTheDiveAgain) {
+  without_layer();
+  for (const char* loss : {"instance_lost", "instance_loss_pending"}) {
+    fakes::FakeHeadset fake(kSmall + "frame 3 instance_refusals 1\nframe 3 " + loss + "\n");
+    NERITIC_ASSERT_STATUS(dive(scene(), 8));
+    EXPECT_EQ(shown(), 8u) << loss;
+  }
+}
+
+TEST_F(HeadsetLife, ARuntimeThatTakesOnlyItsOwnDeviceSaysSoWhenItIsBack) {
+  without_layer();
+  const auto said = [&](const std::string& lines) {
+    fakes::FakeHeadset fake(kSmall + "real_time yes\nperiod 0.05\nframe 3 instance_lost\n" + lines);
+    end_after(3.0);
+    ::testing::internal::CaptureStderr();
+    EXPECT_TRUE(dive(scene(), 0).ok());
+    return ::testing::internal::GetCapturedStderr();
+  };
+  EXPECT_THAT(said("without XR_KHR_vulkan_enable\n"),
+              HasSubstr("came back without XR_KHR_vulkan_enable, so that it takes no graphics "
+                        "device but one that it makes anew: start the dive again\n"));
+  EXPECT_THAT(said("frame 3 vulkan_device_extensions VK_KHR_dedicated_allocation VK_EXT_other\n"),
+              HasSubstr("came back and needs Vulkan's VK_EXT_other"));
+}
+
+// The instance is not thrown away: a second one would be refused.
+TEST_F(HeadsetLife, AHeadsetThatIsUnpluggedForAWhileIsWaitedFor) {
+  fakes::FakeHeadset fake(kSmall +
+                          "frame 3 instance_refusals 1000\nframe 3 system_refusals 2\n"
+                          "frame 3 loss_pending\n");
+  NERITIC_ASSERT_STATUS(dive(scene(), 6));
+  EXPECT_EQ(shown(), 6u);
+}
+
+// Of a session that cannot be made at once, too.
+TEST_F(HeadsetLife, ASessionThatIsRefusedAtFirstIsTriedAgain) {
+  fakes::FakeHeadset fake(kSmall +
+                          "frame 3 instance_refusals 1000\nframe 3 fails xrCreateSession 1\n"
+                          "frame 3 session_lost\n");
+  NERITIC_ASSERT_STATUS(dive(scene(), 6));
+  EXPECT_EQ(shown(), 6u);
+}
+
+TEST_F(HeadsetLife, OneFailedCallIsNoLostRuntime) {
+  for (const char* function : {"xrPollEvent", "xrWaitFrame", "xrBeginFrame", "xrLocateSpace",
+                               "xrLocateViews", "xrSyncActions", "xrAcquireSwapchainImage",
+                               "xrWaitSwapchainImage", "xrReleaseSwapchainImage", "xrEndFrame"}) {
+    fakes::FakeHeadset fake(kSmall + "frame 3 instance_refusals 1000\nframe 3 fails " + function +
+                            " 1\n");
+    NERITIC_ASSERT_STATUS(dive(scene(), 7));
+    EXPECT_EQ(shown(), 7u) << function;
+  }
+}
+
+TEST_F(HeadsetLife, CallsThatGoOnFailingCostTheSession) {
+  fakes::FakeHeadset fake(kSmall + "frame 3 instance_refusals 1000\nframe 3 fails xrEndFrame 10\n");
+  NERITIC_ASSERT_STATUS(dive(scene(), 16));
+  EXPECT_EQ(shown(), 16u);
+}
+
+TEST_F(HeadsetLife, AHeadThatIsTurnedButNowhereIsAtItsLastPlace) {
+  {
+    fakes::FakeHeadset fake(kSmall + "period 0.1\nhead 0 0 1.5 0\nhead 1 0 1.5 0 40\n");
+    fake.write("positioned 0.55 no\n");
+    NERITIC_ASSERT_STATUS(dive(scene(), 6));
+    EXPECT_EQ(shown(), 6u);
+    EXPECT_THAT(fake.log(), HasSubstr("frame 5 "));
+    std::istringstream lines(fake.log());
+    for (std::string line; std::getline(lines, line);) {
+      const auto at = line.find("projection");
+      if (at == std::string::npos) continue;
+      EXPECT_THAT(line.substr(at), HasSubstr("projection 0.00 mm 0.0")) << line;
+    }
+  }
+  {
+    // In a dive without a room: where it was recentred.
+    fakes::FakeHeadset fake(kSmall + "head 0 0 1.6 0\npositioned 0 no\n");
+    NERITIC_ASSERT_STATUS(dive(scene(), 3));
+    EXPECT_THAT(fake.log(), HasSubstr("projection 0.00 mm 0.00 deg"));
+  }
+  fakes::FakeHeadset fake(kSmall + "oriented 0 no\n");
+  end_after(0.3);
+  NERITIC_ASSERT_STATUS(dive(scene(), 0));
+  EXPECT_THAT(fake.log(), ::testing::Not(HasSubstr("projection")));
+}
+
+TEST_F(HeadsetLife, ARefusedExtraIsNotMissed) {
+  const auto said = [&](const std::string& lines) {
+    fakes::FakeHeadset fake(kSmall + lines);
+    ::testing::internal::CaptureStderr();
+    EXPECT_TRUE(dive(scene(), 2).ok());
+    EXPECT_EQ(shown(), 2u);
+    return ::testing::internal::GetCapturedStderr();
+  };
+  EXPECT_THAT(said("fails xrCreateSwapchain 1 1\n"),
+              HasSubstr("xrCreateSwapchain: XR_ERROR_RUNTIME_FAILURE: the pictures go without"));
+  EXPECT_THAT(said("views 4\nfocus_size 40 40\ngaze 0 0 0\nfails xrCreateReferenceSpace 1 2\n"),
+              HasSubstr("the sharp views stay in the middle"));
+  ask_for_rate(90.0);
+  EXPECT_THAT(said("fails xrRequestDisplayRefreshRateFB 1\n"),
+              HasSubstr("the display keeps its own rate"));
+}
+
 TEST_F(HeadsetLife, NoRuntimeIsOneLine) {
   without_layer();
   fakes::FakeHeadset fake("available no\n");
