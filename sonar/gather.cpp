@@ -266,9 +266,10 @@ void SonarGather::record(const Pass& pass, graph::PassContext& context) const {
       pass.in.strengths.empty()
           ? gpu::UploadSlice{buffer_or_none(pass.in.reflectivity), 0, VK_WHOLE_SIZE}
           : commands.upload(pass.in.strengths);
-  const gpu::UploadSlice larger = pass.in.larger.empty()
-                                      ? gpu::UploadSlice{no_buffer_.handle(), 0, VK_WHOLE_SIZE}
-                                      : commands.upload(pass.in.larger);
+  // A buffer of its own even where nothing is drawn larger: no_buffer_ stands for written ones too.
+  const shared::SonarDrawnLarger nothing{};
+  const gpu::UploadSlice larger = pass.in.larger.empty() ? commands.upload(&nothing, sizeof nothing)
+                                                         : commands.upload(pass.in.larger);
   const Intrinsics& k = layout_.intrinsics;
   shared::SonarPush push{
       .n_range = grid_.bins.range,
