@@ -10,6 +10,8 @@ void draw_wrist(Painter& painter, const Shown& shown);
 void draw_mask(Painter& painter, const Shown& shown);
 void draw_corner(Painter& painter, const Shown& shown);
 void draw_console(Painter& painter, const Shown& shown);  // draw_console.cpp
+// The plates of the console, layout units; that of the alarms' band also while there is no alarm.
+std::vector<Box> console_plates(const Shown& shown);
 void draw(LayoutKind layout, Painter& painter, const Shown& shown);
 
 // No-stop time, or the stop with its minutes.

@@ -10,7 +10,17 @@ using draw2d::Align;
 using draw2d::Color;
 using draw2d::Face;
 
-constexpr double kTitle = 12.0, kLeft = 16.0, kWide = 300.0;
+constexpr double kTitle = 12.0, kLeft = 16.0, kWide = 300.0, kStreamRow = 26.0;
+constexpr Box kDiver{kLeft, 16.0, kWide, 688.0}, kCompass{490.0, 16.0, 300.0, 56.0};
+constexpr Box kAlarmBand{400.0, 80.0, 480.0, 60.0}, kCondition{332.0, 462.0, 616.0, 90.0};
+constexpr Box kHeart{332.0, 560.0, 304.0, 144.0}, kBreath{644.0, 560.0, 304.0, 144.0};
+constexpr Box kSonar{964.0, 404.0, kWide, 300.0};
+
+Box streams_plate(const Shown& s) {
+  const double rows =
+      std::max<double>(1.0, static_cast<double>(s.stream_count)) + (s.more_streams > 0 ? 1.0 : 0.0);
+  return {964.0, 16.0, kWide, 40.0 + kStreamRow * rows};
+}
 
 void title(Painter& p, double x, double y, std::string_view words) {
   p.text(x, y, kTitle, words, kLabel, Align::kLeft, Face::kBold);
@@ -55,7 +65,7 @@ void draw_jacket(Painter& p, const Box& box, const Shown& s) {
 void draw_diver(Painter& p, const Shown& s) {
   const UnitNames unit = unit_names(s.units);
   const double x = kLeft, right = x + 152.0;
-  p.plate({x, 16.0, kWide, 688.0}, 14.0, kPlate);
+  p.plate(kDiver, 14.0, kPlate);
   p.cell({{x + 6.0, 22.0, 214.0, 104.0},
           FixedText::of("DEPTH {}", unit.depth).view(),
           s.depth.view(),
@@ -111,10 +121,9 @@ void draw_health(Painter& p, double x, double y, Health health) {
 }
 
 void draw_streams(Painter& p, const Shown& s) {
-  const double x = 964.0, row = 26.0;
-  const double rows =
-      std::max<double>(1.0, static_cast<double>(s.stream_count)) + (s.more_streams > 0 ? 1.0 : 0.0);
-  p.plate({x, 16.0, kWide, 40.0 + row * rows}, 14.0, kPlate);
+  const Box plate = streams_plate(s);
+  const double x = plate.x, row = kStreamRow;
+  p.plate(plate, 14.0, kPlate);
   title(p, x + 12.0, 38.0, "STREAMS");
   double y = 62.0;
   if (s.stream_count == 0) p.text(x + 12.0, y, 11.0, "none from outside", kLabel);
@@ -171,8 +180,8 @@ void draw_trace(Painter& p, const Box& box, const char* name, std::string_view v
 void draw_condition(Painter& p, const Shown& s) {
   const ShownCondition& c = s.condition;
   if (!c.known) return;
-  constexpr double kX = 332.0, kY = 462.0, kW = 616.0;
-  p.plate({kX, kY, kW, 90.0}, 14.0, kPlate);
+  constexpr double kX = kCondition.x, kY = kCondition.y, kW = kCondition.w;
+  p.plate(kCondition, 14.0, kPlate);
   title(p, kX + 14.0, kY + 24.0, "CONDITION");
   if (c.unconscious) {
     const Tone danger{AlarmLevel::kDanger, s.flash};
@@ -224,22 +233,27 @@ void draw_gaze(Painter& p, const Shown& s) {
 
 }  // namespace
 
+std::vector<Box> console_plates(const Shown& s) {
+  std::vector<Box> out{kDiver, kCompass, kAlarmBand, kHeart, kBreath, streams_plate(s)};
+  if (s.condition.known) out.push_back(kCondition);
+  if (s.has_sonar) out.push_back(kSonar);
+  return out;
+}
+
 void draw_console(Painter& p, const Shown& s) {
   if (s.has_gaze) draw_gaze(p, s);
   draw_diver(p, s);
   draw_streams(p, s);
   if (s.has_sonar) {
-    p.plate({964.0, 404.0, kWide, 300.0}, 14.0, kPlate);
+    p.plate(kSonar, 14.0, kPlate);
     title(p, 976.0, 426.0, "ROV SONAR");
   }
-  p.plate({490.0, 16.0, 300.0, 56.0}, 14.0, kPlate);
+  p.plate(kCompass, 14.0, kPlate);
   p.compass({502.0, 22.0, 276.0, 46.0}, s, 14.0);
-  if (any_alarm(s)) p.alarm_band({400.0, 80.0, 480.0, 60.0}, s, 20.0);
+  if (any_alarm(s)) p.alarm_band(kAlarmBand, s, 20.0);
   draw_condition(p, s);
-  draw_trace(p, {332.0, 560.0, 304.0, 144.0}, "HEART", s.heart.view(), "beats/min", kHeartTrace_bpm,
-             s.heart_trace);
-  draw_trace(p, {644.0, 560.0, 304.0, 144.0}, "BREATH", s.breath.view(), "breaths/min",
-             kLungsTrace_l, s.lungs_trace);
+  draw_trace(p, kHeart, "HEART", s.heart.view(), "beats/min", kHeartTrace_bpm, s.heart_trace);
+  draw_trace(p, kBreath, "BREATH", s.breath.view(), "breaths/min", kLungsTrace_l, s.lungs_trace);
 }
 
 }  // namespace neritic::hud

@@ -37,11 +37,13 @@ std::size_t bytes_of(const DiveRows& rows) {
   return rows.vehicles.size() * sizeof(DiveRow) + rows.humans.size() * sizeof(HumanRow);
 }
 
-DiveRecorder::DiveRecorder(const PhysicsWorld& world, const RecordOptions& options)
+DiveRecorder::DiveRecorder(const PhysicsWorld& world, const RecordOptions& options,
+                           double stepped_s)
     : world_(world),
       options_(options),
       figures_(world.vehicles().size()),
       last_(world.start()),
+      stepped_before_s_(stepped_s),
       humans_(world) {}
 
 bool DiveRecorder::row_due(std::size_t vehicle, std::uint64_t step) const {
@@ -92,6 +94,8 @@ double DiveRecorder::off_waypoint_m(std::size_t vehicle, const VehicleState& sta
 }
 
 void DiveRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
+  if (!begun_) from_s_ = snapshot.time_s;
+  newest_s_ = snapshot.time_s;
   for (std::size_t i = 0; i < figures_.size(); ++i) {
     const VehicleState &now = snapshot.state.vehicles()[i], &before = last_.vehicles()[i];
     DiveFigures& figures = figures_[i];

@@ -54,7 +54,8 @@ std::size_t bytes_of(const DiveRows& rows);
 
 class DiveRecorder {
  public:
-  DiveRecorder(const PhysicsWorld& world, const RecordOptions& options);
+  // stepped_s: the seconds of the run's steps before, which went back.
+  DiveRecorder(const PhysicsWorld& world, const RecordOptions& options, double stepped_s = 0.0);
 
   // Each step's result in turn, the start first.
   void add(const sim::Snapshot<PhysicsState>& snapshot);
@@ -63,6 +64,10 @@ class DiveRecorder {
   const DiveRows& rows() const { return rows_; }
   void clear_rows();
   const std::vector<DiveFigures>& figures() const { return figures_; }
+  // The scene time from which on the figures tell: 0, or that of a restored state; the seconds that
+  // this run has stepped, those before a restored state too.
+  double from_s() const { return from_s_; }
+  double stepped_s() const { return stepped_before_s_ + newest_s_ - from_s_; }
   const HumanRecorder& humans() const { return humans_; }
 
  private:
@@ -78,6 +83,7 @@ class DiveRecorder {
   std::vector<DiveFigures> figures_;
   PhysicsState last_;
   bool begun_ = false;
+  double from_s_ = 0.0, newest_s_ = 0.0, stepped_before_s_ = 0.0;
   HumanRecorder humans_;
 };
 

@@ -5,7 +5,10 @@
 namespace neritic::testbed {
 
 Status DiveLog::accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample>) {
-  if (step.step < last_step_) recorder_.emplace(world_, options_);
+  // The run went to a saved state, which may lie before or after the last step.
+  if (begun_ && (step.step < last_step_ || step.step > last_step_ + 1))
+    recorder_.emplace(world_, options_, recorder_->stepped_s());
+  begun_ = true;
   last_step_ = step.step;
   recorder_->add(step);
   if (recorder_->rows().empty()) return {};

@@ -33,7 +33,8 @@ class DiveLog final : public StepSink {
  private:
   const PhysicsWorld& world_;
   RecordOptions options_;
-  std::optional<DiveRecorder> recorder_;  // begins anew if the run goes back
+  std::optional<DiveRecorder> recorder_;  // begins anew if the run goes to a saved state
+  bool begun_ = false;
   std::uint64_t last_step_ = 0;
   std::vector<std::unique_ptr<RowSink>> rows_;
   std::vector<bool> failed_;  // of rows_

@@ -189,20 +189,29 @@ void Console::add_on_demand(graph::FrameGraph&, const ConsoleFrame& frame, Panel
       facts.gauges = gauges_of(options_.physics->world(), options_.physics->shown(), i);
 }
 
-// A ring around what was clicked, and what it is.
-void Console::draw_mark(TimeNs now_ns, float scale) const {
+// A ring around what was clicked, and what it is beside it, off panels and instruments.
+void Console::draw_mark(TimeNs now_ns, float scale, std::span<const PanelRect> instruments) const {
   if (!picked_ || now_ns >= picked_until_ns_) return;
   const ImVec2 display = ImGui::GetIO().DisplaySize;
-  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
   const ImVec2 at(static_cast<float>(picked_->at.x) * display.x,
                   static_cast<float>(picked_->at.y) * display.y);
   const ImVec2 text = ImGui::CalcTextSize(picked_->words.c_str());
   const float pad = 6.0f * scale;
-  const float x = std::clamp(at.x + 12.0f * scale, 0.0f, std::max(0.0f, display.x - text.x - pad));
+  std::vector<PanelRect> taken(instruments.begin(), instruments.end());
+  for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)
+    if (window->Active && !window->Hidden)
+      taken.push_back({window->Pos.x, window->Pos.y, window->Size.x, window->Size.y});
   list.AddCircle(at, 7.0f * scale, kMark, 0, 2.0f * scale);
-  list.AddRectFilled(ImVec2(x - pad, at.y - 0.5f * text.y - pad),
-                     ImVec2(x + text.x + pad, at.y + 0.5f * text.y + pad), kPaper, 4.0f * scale);
-  list.AddText(ImVec2(x, at.y - 0.5f * text.y), kInk, picked_->words.c_str());
+  PanelRect place =
+      label_place({at.x, at.y}, 10.0f * scale, {text.x + 2.0f * pad, text.y + 2.0f * pad},
+                  {0.0f, 0.0f, display.x, display.y}, taken);
+  if (place.empty())  // over what is there rather than nowhere
+    place = {std::clamp(at.x, 0.0f, std::max(0.0f, display.x - text.x - 2.0f * pad)), at.y,
+             text.x + 2.0f * pad, text.y + 2.0f * pad};
+  list.AddRectFilled(ImVec2(place.x, place.y), ImVec2(place.right(), place.bottom()), kPaper,
+                     4.0f * scale);
+  list.AddText(ImVec2(place.x + pad, place.y + pad), kInk, picked_->words.c_str());
 }
 
 // A click into the picture, and the panel that the cursor is over.
@@ -255,7 +264,7 @@ Result<std::optional<xr::PanelLayer>> Console::declare(graph::FrameGraph& graph,
   if (!show_panels_ && !help_page_ && !noted && recording().empty())
     return std::optional<xr::PanelLayer>();
   draw(graph, frame);
-  draw_mark(now, overlay_.scale());
+  draw_mark(now, overlay_.scale(), frame.taken);
   const graph::ImageHandle image = overlay_.declare(graph);
   return std::optional(screen_panel(frame.group, image, overlay_.drawn()));
 }

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,7 +46,7 @@ struct ConsoleFrame {
   const DiveTimes& times;
   double elapsed_s = 0.0, time_s = 0.0;
   Quality quality;
-  TakenCorner taken;  // by a diver's instrument, pixels
+  std::vector<PanelRect> taken;  // by a diver's instruments, pixels
   // The picture of the camera that inset() names; empty: it is not drawn in this frame.
   graph::ImageHandle inset;
 };
@@ -85,7 +86,7 @@ class Console {
   std::string recording() const;
   void draw(graph::FrameGraph& graph, const ConsoleFrame& frame);
   void add_on_demand(graph::FrameGraph& graph, const ConsoleFrame& frame, PanelFacts& facts);
-  void draw_mark(TimeNs now_ns, float scale) const;
+  void draw_mark(TimeNs now_ns, float scale, std::span<const PanelRect> instruments) const;
   void look_at_cursor();
   void show_sonars();
 

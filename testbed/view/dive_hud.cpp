@@ -9,19 +9,6 @@
 namespace neritic::testbed {
 namespace {
 
-// In a window an instrument is never smaller than this part of its natural size, as its smallest
-// text would not be read, and takes at most this part of the view.
-constexpr double kLeastScale = 0.75, kMostOfView = 0.6;
-
-std::uint32_t height_in_window(const hud::Layout& layout, const xr::ViewGroup& group) {
-  if (layout.window.height >= 1.0) return group.height;  // all of the view
-  const double wanted =
-      std::max(layout.window.height * group.height, kLeastScale * layout.height_px);
-  const double aspect = static_cast<double>(layout.width_px) / layout.height_px;
-  const double most = std::min(kMostOfView * group.height, group.width / aspect);
-  return static_cast<std::uint32_t>(std::max(1.0, std::round(std::min(wanted, most))));
-}
-
 // A rectangle of the view, in pixels from its left and top, as a panel a metre ahead.
 xr::PanelLayer over_pixels(const xr::ViewGroup& group, double left, double top, double width,
                            double height) {
@@ -101,14 +88,20 @@ bool DiveHud::shown(hud::LayoutKind layout) const {
   return std::ranges::find(options_.layouts, layout) != options_.layouts.end();
 }
 
-TakenCorner DiveHud::corner(const xr::ViewGroup& group) const {
-  if (!shown(hud::LayoutKind::kCorner)) return {};
-  const hud::Layout& layout = hud::layout_of(hud::LayoutKind::kCorner);
-  const double height = height_in_window(layout, group);
-  const double width = height * layout.width_px / layout.height_px;
-  const auto free = [](double all, double used) { return std::max(0.0, all - used); };
-  return {static_cast<float>(layout.window.down * free(group.height, height)),
-          static_cast<float>(width + (1.0 - layout.window.across) * free(group.width, width))};
+std::vector<HudPlace> DiveHud::places(const xr::ViewGroup& group) const {
+  std::vector<hud::LayoutKind> kinds;
+  for (const Instrument& instrument : instruments_)
+    if (shown(instrument.hud.layout().kind)) kinds.push_back(instrument.hud.layout().kind);
+  return hud_places(kinds, group.width, group.height);
+}
+
+std::vector<PanelRect> DiveHud::taken(const xr::ViewGroup& group) const {
+  std::vector<PanelRect> out;
+  for (const HudPlace& place : places(group)) {
+    const auto& hud = instruments_[static_cast<std::size_t>(place.kind)].hud;
+    std::ranges::copy(taken_by(place, hud.shown()), std::back_inserter(out));
+  }
+  return out;
 }
 
 void DiveHud::cycle() {
@@ -131,17 +124,20 @@ bool DiveHud::look(const HudView& view) {
 Status DiveHud::declare(graph::FrameGraph& graph, const HudView& view,
                         std::vector<xr::Layer>& layers) {
   const bool anew = look(view);
+  const auto in_window = view.tracked ? std::vector<HudPlace>() : places(view.group);
   for (Instrument& instrument : instruments_) {
     const hud::Layout& layout = instrument.hud.layout();
-    if (!shown(layout.kind)) {
+    const auto found = std::ranges::find(in_window, layout.kind, &HudPlace::kind);
+    const PanelRect rect = found == in_window.end() ? PanelRect() : found->rect;
+    if (!shown(layout.kind) || (!view.tracked && rect.empty())) {
       if (anew) instrument.hud.observe(data_);
       continue;
     }
     const std::uint32_t height_px =
-        view.tracked ? layout.height_px : height_in_window(layout, view.group);
+        view.tracked ? layout.height_px : static_cast<std::uint32_t>(rect.height);
     NERITIC_TRY(const graph::ImageHandle image,
                 declare_picture(graph, instrument, height_px, anew));
-    layers.push_back(place(instrument, view));
+    layers.push_back(place(instrument, view, rect));
     std::get<xr::PanelLayer>(layers.back()).image = image;
   }
   return {};
@@ -199,16 +195,12 @@ Result<graph::ImageHandle> DiveHud::declare_picture(graph::FrameGraph& graph,
   return image;
 }
 
-xr::PanelLayer DiveHud::place(const Instrument& instrument, const HudView& view) const {
+xr::PanelLayer DiveHud::place(const Instrument& instrument, const HudView& view,
+                              const PanelRect& rect) const {
   const hud::Layout& layout = instrument.hud.layout();
   const ImageU8& picture = instrument.hud.picture();
   if (!view.tracked) {
-    const auto free = [](double part, std::uint32_t all, std::uint32_t used) {
-      return all > used ? std::round(part * (all - used)) : 0.0;
-    };
-    xr::PanelLayer panel = over_pixels(
-        view.group, free(layout.window.across, view.group.width, picture.width),
-        free(layout.window.down, view.group.height, picture.height), picture.width, picture.height);
+    xr::PanelLayer panel = over_pixels(view.group, rect.x, rect.y, picture.width, picture.height);
     panel.name = layout.name;
     return panel;
   }

@@ -13,7 +13,7 @@
 #include "testbed/devices/devices.hpp"
 #include "testbed/instruments/instrument_feed.hpp"
 #include "testbed/motion/live_physics.hpp"
-#include "testbed/view/panel_layout.hpp"
+#include "testbed/view/hud_places.hpp"
 
 namespace neritic::testbed {
 
@@ -51,8 +51,8 @@ class DiveHud {
   // Adds the panels of this frame to the layers; those of which something changed are drawn anew.
   Status declare(graph::FrameGraph& graph, const HudView& view, std::vector<xr::Layer>& layers);
 
-  // The pixels of a window that the corner's instrument has.
-  TakenCorner corner(const xr::ViewGroup& group) const;
+  // The pixels of a window that the instruments take from its panels.
+  std::vector<PanelRect> taken(const xr::ViewGroup& group) const;
 
   // The next choice: each layout alone, then none, then those of the options.
   void cycle();
@@ -67,7 +67,10 @@ class DiveHud {
   Result<graph::ImageHandle> declare_picture(graph::FrameGraph& graph, Instrument& instrument,
                                              std::uint32_t height_px, bool anew);
   Status make_image(Instrument& instrument);
-  xr::PanelLayer place(const Instrument& instrument, const HudView& view) const;
+  // rect: of a window.
+  xr::PanelLayer place(const Instrument& instrument, const HudView& view,
+                       const PanelRect& rect) const;
+  std::vector<HudPlace> places(const xr::ViewGroup& group) const;
   bool shown(hud::LayoutKind layout) const;
 
   gpu::Device& device_;

@@ -277,28 +277,31 @@ void draw_times(const PanelsShown& shown, const PanelRect& rect, TimeNs now_ns, 
 // The panels on demand, in the order of what an operator needs first.
 struct Demand {
   std::vector<PanelWish> wishes;
+  std::vector<std::string> names;                                // of each wish, for an operator
   std::optional<std::size_t> times, gauges, inset, map, graphs;  // their places in it
 };
 
 Demand demand_of(const PanelFacts& facts, const PanelsShown& shown, float scale) {
   constexpr float kInsetWidth_px = 300.0f, kInsetFrame_px = 40.0f, kLeastInset_px = 130.0f;
   Demand out;
-  const auto add = [&](bool wanted, const PanelWish& wish) -> std::optional<std::size_t> {
+  const auto add = [&](const char* name, bool wanted,
+                       const PanelWish& wish) -> std::optional<std::size_t> {
     if (!wanted) return std::nullopt;
     out.wishes.push_back(wish);
+    out.names.push_back(name);
     return out.wishes.size() - 1;
   };
   const std::size_t passes = shown.frames ? shown.frames->passes().size() : 0;
-  out.times = add(!shown.device.empty(),
+  out.times = add("times", !shown.device.empty(),
                   {.wanted = height_of_lines(passes + 4, scale), .least = kLeastTimes_px});
-  out.gauges =
-      add(facts.gauges.has_value(), facts.gauges ? gauges_wish(*facts.gauges) : PanelWish{});
+  out.gauges = add("gauges", facts.gauges.has_value(),
+                   facts.gauges ? gauges_wish(*facts.gauges) : PanelWish{});
   const float aspect = facts.inset ? facts.inset->aspect : 1.0f;
-  out.inset = add(facts.inset.has_value(),
+  out.inset = add("inset", facts.inset.has_value(),
                   {.wanted = kInsetWidth_px * aspect + kInsetFrame_px, .least = kLeastInset_px});
-  out.map = add(shown.trails != nullptr, kMapWish);
-  out.graphs =
-      add(shown.numbers != nullptr, shown.graphs ? graphs_wish(*shown.graphs) : PanelWish{});
+  out.map = add("map", shown.trails != nullptr, kMapWish);
+  out.graphs = add("graphs", shown.numbers != nullptr,
+                   shown.graphs ? graphs_wish(*shown.graphs) : PanelWish{});
   return out;
 }
 
@@ -316,6 +319,20 @@ void draw_on_demand(const PanelFacts& facts, const PanelsShown& shown, const Dem
 
 }  // namespace
 
+std::string hint_words(const std::string& hint, const std::vector<std::string>& wished,
+                       const PanelLayout& layout, std::size_t sonars) {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < wished.size(); ++i)
+    if (layout.extras[i].empty()) out.push_back(wished[i]);
+  const std::size_t more = sonars - layout.fans.size();
+  if (layout.fans.empty() && more > 0) out.push_back(more > 1 ? "sonars" : "sonar");
+  std::string words = hint;
+  if (!out.empty()) words = fmt::format("no room: {}   {}", fmt::join(out, ", "), hint);
+  if (!layout.fans.empty() && more > 0)
+    words += fmt::format("   Tab  {} more sonar{}", more, more > 1 ? "s" : "");
+  return words;
+}
+
 void draw_panels(const PanelFacts& facts, const FreeCamera& camera, const PanelsShown& shown,
                  TimeNs now_ns, float scale) {
   const ImVec2 display = ImGui::GetIO().DisplaySize;
@@ -327,20 +344,19 @@ void draw_panels(const PanelFacts& facts, const FreeCamera& camera, const Panels
                       static_cast<float>(sonars.back()->shape.width));
   }
   const Demand demand = demand_of(facts, shown, scale);
+  std::vector<PanelRect> taken;
+  for (const PanelRect& r : shown.taken)
+    taken.push_back({r.x / scale, r.y / scale, r.width / scale, r.height / scale});
   const PanelLayout layout =
       lay_out(display.x / scale, display.y / scale, height_of_lines(status_lines(facts), scale),
-              aspects, demand.wishes, {shown.taken.top / scale, shown.taken.width / scale});
+              aspects, demand.wishes, taken);
   if (!layout.readout.empty()) draw_readout(camera, layout.readout, scale);
   if (!layout.status.empty()) draw_status(facts, shown, layout.status, scale);
   for (std::size_t i = 0; i < layout.fans.size(); ++i)
     draw_sonar(*sonars[i], layout.fans[i], facts.sonar_gain_db, scale);
   draw_on_demand(facts, shown, demand, layout.extras, now_ns, scale);
-  const std::size_t more = sonars.size() - layout.fans.size();
-  if (!layout.hint.empty()) {
-    const std::string others =
-        more > 0 ? fmt::format("   Tab  {} more sonar{}", more, more > 1 ? "s" : "") : "";
-    draw_hint(shown.hint + others, scale, layout.hint);
-  }
+  if (!layout.hint.empty())
+    draw_hint(hint_words(shown.hint, demand.names, layout, sonars.size()), scale, layout.hint);
 }
 
 void draw_recording_light(const std::string& text, float scale) {

@@ -68,9 +68,13 @@ struct PanelsShown {
   std::string hint;
   const MapTrails* trails = nullptr;    // nullptr: no map
   const RunNumbers* numbers = nullptr;  // nullptr: no graphs
-  TakenCorner taken;                    // by a diver's instrument, pixels
+  std::span<const PanelRect> taken;     // by a diver's instruments, pixels
   GraphChoice* graphs = nullptr;        // with numbers
 };
+// The line at the lower edge: what was asked for and has no room first. wished: names of the
+// layout's extras; sonars: how many there are to show.
+std::string hint_words(const std::string& hint, const std::vector<std::string>& wished,
+                       const PanelLayout& layout, std::size_t sonars);
 void draw_panels(const PanelFacts& facts, const FreeCamera& camera, const PanelsShown& shown,
                  TimeNs now_ns, float scale);
 // Where the panels are hidden: one line at the lower edge; the light of a recording.

@@ -333,7 +333,7 @@ Status DiveView::declare(graph::FrameGraph& graph, const SensorFrame& frame, dou
     NERITIC_TRY_STATUS(hud_->declare(graph, seen, layers));
   }
   if (console_) {
-    const TakenCorner taken = hud_ ? hud_->corner(frame_.groups.front()) : TakenCorner{};
+    auto taken = hud_ ? hud_->taken(frame_.groups.front()) : std::vector<PanelRect>();
     NERITIC_TRY(const auto panels, console_->declare(graph, {.group = frame_.groups.front(),
                                                              .choice = choice_,
                                                              .pilot = pilot_,
@@ -341,7 +341,7 @@ Status DiveView::declare(graph::FrameGraph& graph, const SensorFrame& frame, dou
                                                              .elapsed_s = elapsed_s_,
                                                              .time_s = time_s,
                                                              .quality = quality(),
-                                                             .taken = taken,
+                                                             .taken = std::move(taken),
                                                              .inset = inset}));
     if (panels) layers.push_back(*panels);
   }

@@ -58,6 +58,48 @@ Fit fit(const std::vector<Row>& rows, float scale) {
   return out;
 }
 
+// Where one column is wider than the window: each action's controls with its help below, both
+// wrapped; the first rows of each page, and the number of all.
+std::vector<std::size_t> stacked_pages(const std::vector<Row>& rows, const ImVec2& room) {
+  std::vector<std::size_t> first{0};
+  float used = 0.0f;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    float height = 0.0f;
+    for (const std::string* text : {&rows[i].controls, &rows[i].help})
+      height += ImGui::CalcTextSize(text->c_str(), nullptr, false, room.x).y +
+                ImGui::GetStyle().ItemSpacing.y;
+    if (used > 0.0f && used + height > room.y) {
+      first.push_back(i);
+      used = 0.0f;
+    }
+    used += height;
+  }
+  first.push_back(rows.size());
+  return first;
+}
+
+std::size_t draw_stacked(const std::vector<Row>& rows, std::size_t page, float scale) {
+  const ImVec2 display = ImGui::GetIO().DisplaySize, padding = ImGui::GetStyle().WindowPadding;
+  const float edge = kEdge_px * scale;
+  const ImVec2 size(display.x - edge, display.y - edge);
+  const ImVec2 room(size.x - 2.0f * padding.x, size.y - 2.0f * padding.y - ImGui::GetFrameHeight());
+  const std::vector<std::size_t> first = stacked_pages(rows, room);
+  const std::size_t pages = first.size() - 1, shown = std::min(page, pages - 1);
+  ImGui::SetNextWindowPos(ImVec2(0.5f * edge, 0.5f * edge));
+  ImGui::SetNextWindowSize(size);
+  ImGui::SetNextWindowBgAlpha(0.92f);
+  ImGui::Begin(fmt::format("Keys {}/{}###keys", shown + 1, pages).c_str(), nullptr,
+               kFixedPanel | ImGuiWindowFlags_NoScrollbar);
+  ImGui::PushTextWrapPos(0.0f);
+  for (std::size_t i = first[shown]; i < first[shown + 1]; ++i) {
+    ImGui::TextUnformatted(rows[i].controls.c_str());
+    ImGui::TextDisabled("%s", rows[i].help.c_str());
+  }
+  ImGui::PopTextWrapPos();
+  ImGui::End();
+  return pages;
+}
+
 }  // namespace
 
 std::size_t draw_help(std::span<const xr::ActionDesc> actions, std::size_t page, float scale) {
@@ -65,6 +107,9 @@ std::size_t draw_help(std::span<const xr::ActionDesc> actions, std::size_t page,
   for (const xr::ActionDesc& action : actions)
     if (!action.help.empty()) rows.push_back({desktop_controls(action), action.help});
   const Fit fits = fit(rows, scale);
+  if (fits.column >
+      ImGui::GetIO().DisplaySize.x - kEdge_px * scale - 2.0f * ImGui::GetStyle().WindowPadding.x)
+    return draw_stacked(rows, page, scale);
   const std::size_t pages = (rows.size() + fits.a_page() - 1) / fits.a_page();
   const std::size_t first = std::min(page, pages - 1) * fits.a_page();
   const ImVec2 display = ImGui::GetIO().DisplaySize;

@@ -64,6 +64,25 @@ MapFrame map_frame(const std::vector<MapMark>& marks, const MapTrails& trails) {
           std::max(kLeastSide_m, kMargin * std::max(high.x - low.x, high.y - low.y))};
 }
 
+PanelRect label_place(const Vec2& at, float off, const Vec2& size, const PanelRect& room,
+                      const std::vector<PanelRect>& taken) {
+  constexpr int kLines = 5;  // as far up and down as it is still seen whose label it is
+  const auto x = static_cast<float>(at.x), y = static_cast<float>(at.y);
+  const auto width = static_cast<float>(size.x), height = static_cast<float>(size.y);
+  for (int line = 0; line < kLines; ++line)
+    for (const float top :
+         {y - static_cast<float>(line + 1) * height, y + static_cast<float>(line) * height})
+      for (const float left : {x + off, x - off - width}) {
+        const PanelRect rect{left, top, width, height};
+        const bool inside = rect.x >= room.x && rect.y >= room.y && rect.right() <= room.right() &&
+                            rect.bottom() <= room.bottom();
+        if (inside &&
+            std::ranges::none_of(taken, [&](const PanelRect& t) { return overlap(rect, t); }))
+          return rect;
+      }
+  return {};
+}
+
 void draw_map(const std::vector<MapMark>& marks, const MapMark& eye, const MapTrails& trails,
               const PanelRect& rect, float scale) {
   begin_panel("Map, north up###map", rect, scale, ImGuiWindowFlags_NoScrollbar);
@@ -91,6 +110,10 @@ void draw_map(const std::vector<MapMark>& marks, const MapMark& eye, const MapTr
     const float y = place({0.0, north}).y;
     list.AddLine(ImVec2(from.x, y), ImVec2(to.x, y), kLine);
   });
+  const std::string grid = fmt::format("grid {:g} m", step);
+  const ImVec2 grid_size = ImGui::CalcTextSize(grid.c_str());
+  std::vector<PanelRect> labels{
+      {from.x + 4.0f * scale, to.y - grid_size.y - 2.0f * scale, grid_size.x, grid_size.y}};
   draw_dart(list, place(east_north(eye.position_m)), eye.course_rad, 5.0f * scale, kFaint);
   for (const MapMark& mark : marks) {
     for (const Vec2& p : trails.of(mark.name)) list.PathLineTo(place(p));
@@ -98,12 +121,14 @@ void draw_map(const std::vector<MapMark>& marks, const MapMark& eye, const MapTr
     if (!on_a_map(mark.position_m)) continue;
     const ImVec2 at = place(east_north(mark.position_m));
     draw_dart(list, at, mark.course_rad, 6.0f * scale, kMark);
-    const float width = ImGui::CalcTextSize(mark.name.c_str()).x;
-    const float x = std::clamp(at.x + 8.0f * scale, from.x, std::max(from.x, to.x - width));
-    list.AddText(ImVec2(x, at.y - ImGui::GetTextLineHeight()), kInk, mark.name.c_str());
+    const ImVec2 size = ImGui::CalcTextSize(mark.name.c_str());
+    const PanelRect label = label_place({at.x, at.y}, 8.0f * scale, {size.x, size.y},
+                                        {from.x, from.y, room.x, room.y}, labels);
+    if (label.empty()) continue;
+    labels.push_back(label);
+    list.AddText(ImVec2(label.x, label.y), kInk, mark.name.c_str());
   }
-  list.AddText(ImVec2(from.x + 4.0f * scale, to.y - ImGui::GetTextLineHeight() - 2.0f * scale),
-               kFaint, fmt::format("grid {:g} m", step).c_str());
+  list.AddText(ImVec2(labels[0].x, labels[0].y), kFaint, grid.c_str());
   list.PopClipRect();
   ImGui::End();
 }

@@ -40,6 +40,11 @@ struct MapFrame {
 };
 MapFrame map_frame(const std::vector<MapMark>& marks, const MapTrails& trails);
 
+// The place of a label beside what it names, at `at`, `off` away from it: within the room and off
+// what is taken; empty: there is none. Right above where that is free.
+PanelRect label_place(const Vec2& at, float off, const Vec2& size, const PanelRect& room,
+                      const std::vector<PanelRect>& taken);
+
 inline constexpr PanelWish kMapWish{.wanted = 300.0f, .least = 180.0f};
 void draw_map(const std::vector<MapMark>& marks, const MapMark& eye, const MapTrails& trails,
               const PanelRect& rect, float scale);

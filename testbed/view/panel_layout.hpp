@@ -1,5 +1,7 @@
-// Where the panels of a window lie, so that none leaves it, none covers another, and the middle of
-// the picture stays free. Units: points, pixels at a scale of 1; x to the right, y down. Pure
+// Where the panels of a window lie, so that none leaves it, none covers another or a diver's
+// instrument, and the middle of the picture stays free. What has no room is left out: first sonars,
+// from the last one, then the panels on demand, from the last one, then the status, the hint, the
+// readout of compass and depth. Units: points, pixels at a scale of 1; x to the right, y down. Pure
 // function; any thread.
 #pragma once
 
@@ -32,11 +34,6 @@ struct PanelWish {
   float wanted = 0.0f, least = 0.0f;
 };
 
-// The window's lower right corner, from that height down and that wide from the right edge.
-struct TakenCorner {
-  float top = 1e9f, width = 0.0f;
-};
-
 struct PanelLayout {
   PanelRect status, readout, hint;
   std::vector<PanelRect>
@@ -45,9 +42,9 @@ struct PanelLayout {
 };
 
 // status_height: that it wants. fan_aspects: of each sonar's fan; extras come before fans.
-// taken: the lower right corner that a diver's instrument has.
+// taken: by a diver's instruments.
 PanelLayout lay_out(float width, float height, float status_height,
                     std::span<const float> fan_aspects, std::span<const PanelWish> wishes = {},
-                    const TakenCorner& taken = {});
+                    std::span<const PanelRect> taken = {});
 
 }  // namespace neritic::testbed

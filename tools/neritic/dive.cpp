@@ -208,12 +208,12 @@ std::optional<RunKeeperOptions> kept_by_key(const DiveFlags& flags,
 // On standard output: a dive's end, the same as without pictures; without a window the times too.
 void tell(const DiveFlags& flags, const gpu::Device& device, const scene::Camera& camera,
           const DiveView& view, const Loop& loop, const LivePhysics* physics,
-          const DiveRecorder* recorder, double start_s, const Devices* devices) {
+          const DiveRecorder* recorder, const Devices* devices) {
   const std::vector<DeviceHealth> health =
       devices ? devices->health() : std::vector<DeviceHealth>();
   if (flags.json)
     return print_summary(flags, physics->world(), physics->simulation(), *recorder,
-                         {loop.wall_s(), physics->counts().dropped, start_s, health});
+                         {loop.wall_s(), physics->counts().dropped, health});
   if (flags.quiet) return;
   if (flags.headless)
     fmt::print("{}, {} x {}\n{}", device.info().name, camera.width, camera.height,
@@ -222,7 +222,7 @@ void tell(const DiveFlags& flags, const gpu::Device& device, const scene::Camera
     fmt::print("{} frames in {:.1f} s on {}\n", loop.frames(), loop.wall_s(), device.info().name);
   if (physics)
     print_summary(flags, physics->world(), physics->simulation(), *recorder,
-                  {loop.wall_s(), physics->counts().dropped, start_s, health});
+                  {loop.wall_s(), physics->counts().dropped, health});
 }
 
 // The window's size where it has one, and its panels, for the next time. A folder that cannot be
@@ -278,6 +278,9 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
                                        DeviceSource::Pace::kThread));
   }
   NERITIC_TRY(const auto hud, hud_options(flags, physics.get(), unasked_hud(screen)));
+  if (hud && !screen.headset && !fit_one_window(hud->layouts))
+    return refusal("--hud", fmt::format("\"{}\" in a window", flags.hud),
+                   "console alone, which shows all of the others, or any of corner, mask, wrist");
   NERITIC_TRY(const auto view,
               DiveView::create(*session, screen.shown_on(), screen.overlay.get(), physics.get(),
                                {.viewpoint = chosen.viewpoint,
@@ -372,7 +375,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
   // A run that failed prints its summary too.
   if (replay && !flags.quiet && !flags.json) replay->tell();
   tell(flags, *screen.device, camera, *view, loop, physics.get(),
-       files ? &files->recorder() : nullptr, start_s, devices.get());
+       files ? &files->recorder() : nullptr, devices.get());
   NERITIC_TRY_STATUS(status);
   if (!flags.timeline.empty())
     NERITIC_TRY_STATUS(write_timeline(

@@ -216,11 +216,12 @@ nlohmann::json summary_json(const DiveFlags& flags, const PhysicsWorld& world,
                             const PhysicsSimulation& simulation, const DiveRecorder& recorder,
                             const Pace& pace) {
   const auto& newest = simulation.newest();
-  const double speed = (newest.time_s - pace.start_s) / std::max(pace.wall_s, 1e-9);
+  const double speed = recorder.stepped_s() / std::max(pace.wall_s, 1e-9);
   const std::string hash = fmt::format("{:016x}", newest.hash);
   const auto sources = simulation.inbox().source_names();
   nlohmann::json json{{"scene", flags.scene},
                       {"simulated_s", newest.time_s},
+                      {"restored_s", recorder.from_s()},
                       {"steps", newest.step},
                       {"step_s", world.step_s()},
                       {"wall_s", pace.wall_s},

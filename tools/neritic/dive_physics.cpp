@@ -108,9 +108,9 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,
   const Status status = loop.run();
   // A run that failed prints its summary too.
   if (replay && !flags.quiet && !flags.json) replay->tell();
-  print_summary(flags, world, physics->simulation(), files.recorder(),
-                {loop.wall_s(), loop.dropped(), start_s,
-                 devices ? devices->health() : std::vector<DeviceHealth>()});
+  print_summary(
+      flags, world, physics->simulation(), files.recorder(),
+      {loop.wall_s(), loop.dropped(), devices ? devices->health() : std::vector<DeviceHealth>()});
   NERITIC_TRY_STATUS(status);
   if (loop.interrupted())
     return failure(ErrorCode::kInterrupted, "interrupted after {:.4g} s of {:g}{}",

@@ -185,7 +185,7 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
                    const PhysicsSimulation& simulation, const DiveRecorder& recorder,
                    const Pace& pace) {
   const auto& newest = simulation.newest();
-  const double speed = (newest.time_s - pace.start_s) / std::max(pace.wall_s, 1e-9);
+  const double speed = recorder.stepped_s() / std::max(pace.wall_s, 1e-9);
   const std::string hash = fmt::format("{:016x}", newest.hash);
   const auto sources = simulation.inbox().source_names();
   if (flags.json) {
@@ -216,7 +216,7 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
   fmt::print("{}", source_lines(simulation.inbox()));
   for (const DeviceHealth& health : pace.devices) log_info("{}", health_words(health, now_ns()));
   const std::string restored =
-      pace.start_s > 0.0 ? fmt::format(" ({:g} s of them restored)", pace.start_s) : "";
+      recorder.from_s() > 0.0 ? fmt::format(" ({:g} s of them restored)", recorder.from_s()) : "";
   fmt::print("{:g} s in {} steps{}, {:.1f} simulated seconds a second, {} steps dropped, hash {}\n",
              newest.time_s, newest.step, restored, speed, pace.dropped, hash);
 }

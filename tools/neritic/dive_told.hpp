@@ -15,7 +15,6 @@ namespace neritic::tools {
 struct Pace {
   double wall_s = 0.0;
   std::uint64_t dropped = 0;
-  double start_s = 0.0;                             // of a restored state; 0: a new run
   std::vector<testbed::DeviceHealth> devices = {};  // as they were at the end
 };
 

@@ -81,14 +81,14 @@ Status simulate_lab(const SimulateFlags& flags, const scene::Scene& scene,
   told.quiet = flags.quiet;
   if (flags.json) {
     nlohmann::json json = summary_json(told, world, physics->simulation(), files.recorder(),
-                                       {loop.wall_s(), 0, 0.0, devices->health()});
+                                       {loop.wall_s(), 0, devices->health()});
     json["clocks"] = clocks_json(errors);
     json["packets_sent"] = lab->sent();
     json["packets_lost_on_purpose"] = lab->lost();
     fmt::print("{}\n", json_text(json));
   } else if (!flags.quiet) {
     print_summary(told, world, physics->simulation(), files.recorder(),
-                  {loop.wall_s(), 0, 0.0, devices->health()});
+                  {loop.wall_s(), 0, devices->health()});
     for (const DeviceHealth& health : devices->health())
       fmt::print("{}\n", health_words(health, health.heard_ns));
     tell_clocks(errors, seconds > SimulatedLab::kKnownAfter_s);

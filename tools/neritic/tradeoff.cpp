@@ -31,11 +31,22 @@ std::string files(const TradeoffFlags& flags, const char* stem, bool drawn) {
                      drawn ? ", .png" : "");
 }
 
+// The files that nobody named are the project's, by paths from its folder. other: what else would
+// do.
+Status must_be_here(const char* command, const std::filesystem::path& path,
+                    const std::string& other = "") {
+  std::error_code none;
+  if (std::filesystem::exists(path, none)) return {};
+  return refusal(command, fmt::format("no {} in this folder", path.string()),
+                 "a start in the project's folder" + other);
+}
+
 Result<std::string> trade_physics(const TradeoffFlags& flags) {
   if (!flags.kind.empty())
     return refusal("tradeoff physics", fmt::format("kind '{}'", flags.kind), "none");
   PhysicsTradeoffOptions options;
   options.quick = flags.quick;
+  NERITIC_TRY_STATUS(must_be_here("tradeoff physics", options.scene));
   Progress progress("tradeoff physics", steps(options));
   options.step = [&] { progress.step(); };
   NERITIC_TRY(const PhysicsTradeoff tradeoff, run_physics_tradeoff(options));
@@ -48,11 +59,7 @@ Result<std::string> trade_navigation(const TradeoffFlags& flags) {
     return refusal("tradeoff navigation", fmt::format("kind '{}'", flags.kind), "none");
   NavigationTradeoffOptions options;
   options.quick = flags.quick;
-  std::error_code none;
-  if (!std::filesystem::exists(options.vehicle, none))
-    return refusal("tradeoff navigation",
-                   fmt::format("no {} in this folder", options.vehicle.string()),
-                   "a start in the project's folder");
+  NERITIC_TRY_STATUS(must_be_here("tradeoff navigation", options.vehicle));
   Progress progress("tradeoff navigation", steps(options));
   options.step = [&] { progress.step(); };
   NERITIC_TRY(const NavigationTradeoff tradeoff, run_navigation_tradeoff(options));
@@ -115,7 +122,10 @@ Result<std::string> trade_xr(const TradeoffFlags& flags) {
   if (!flags.kind.empty())
     return refusal("tradeoff xr", fmt::format("kind '{}'", flags.kind), "none");
   XrTradeoffOptions options;
-  if (flags.scene != TradeoffFlags().scene) options.scene = flags.scene;
+  if (flags.scene != TradeoffFlags().scene)
+    options.scene = flags.scene;
+  else
+    NERITIC_TRY_STATUS(must_be_here("tradeoff xr", options.scene, ", or --scene FILE"));
   options.device = flags.device;
   options.quick = flags.quick;
   Progress progress("tradeoff xr", steps(options));
@@ -129,7 +139,10 @@ Result<std::string> trade_camera(const TradeoffFlags& flags) {
   if (!flags.kind.empty())
     return refusal("tradeoff camera", fmt::format("kind '{}'", flags.kind), "none");
   CameraTradeoffOptions options;
-  if (flags.scene != TradeoffFlags().scene) options.scene = flags.scene;
+  if (flags.scene != TradeoffFlags().scene)
+    options.scene = flags.scene;
+  else
+    NERITIC_TRY_STATUS(must_be_here("tradeoff camera", options.scene, ", or --scene FILE"));
   options.device = flags.device;
   options.quick = flags.quick;
   Progress progress("tradeoff camera", steps(options));
@@ -157,6 +170,9 @@ Result<std::string> trade_network(const TradeoffFlags& flags) {
     return refusal("tradeoff network", fmt::format("kind '{}'", flags.kind), "none");
   NetworkTradeoffOptions options;
   const bool named = flags.scene != TradeoffFlags().scene;
+  if (!named)
+    NERITIC_TRY_STATUS(
+        must_be_here("tradeoff network", SimulateFlags().scene, ", or --scene FILE"));
   NERITIC_TRY(options.scene, load_scene_or_model(named ? flags.scene : SimulateFlags().scene, ""));
   options.quick = flags.quick;
   Progress progress("tradeoff network", steps(options));
@@ -195,10 +211,8 @@ Result<std::string> trade_sonar(const TradeoffFlags& flags) {
       return refusal("tradeoff sonar", fmt::format("kind '{}' without a scene", flags.kind),
                      "with --scene FILE");
   }
-  std::error_code none;
-  if (flags.scene == TradeoffFlags().scene && !std::filesystem::exists(flags.scene, none))
-    return refusal("--scene", fmt::format("no {} in this folder", flags.scene),
-                   "a start in the project's folder, --scene FILE, or --scene none");
+  if (flags.scene == TradeoffFlags().scene)
+    NERITIC_TRY_STATUS(must_be_here("--scene", flags.scene, ", --scene FILE, or --scene none"));
   Progress progress("tradeoff sonar", steps(options));
   options.step = [&] { progress.step(); };
   options.now = [&](const std::string& doing) { progress.now(doing); };

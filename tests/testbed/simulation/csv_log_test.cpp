@@ -45,6 +45,28 @@ TEST(CsvLog, IsTheTableOfTheRowsOnceItIsWhole) {
   EXPECT_FALSE(fs::exists(part_of(folder / "log.csv")));
 }
 
+// Its figures and times then tell of what follows, as after --restore.
+TEST(CsvLog, ARunThatGoesToASavedStateTellsOfWhatFollowsAndOfAllThatItStepped) {
+  TestDive dive = diver_and_vehicle();
+  DiveLog log(*dive.world, 0.0, {});
+  const auto add = [&] { ASSERT_TRUE(log.accept(dive.simulation->newest(), {}).ok()); };
+  add();
+  dive.run(1.0, add);
+  const SavedState saved = saved_state(*dive.simulation, dive.world->state_format());
+  dive.run(2.0, add);
+  EXPECT_EQ(log.recorder().from_s(), 0.0);
+  const double before_m = log.recorder().figures()[0].path_m;
+  for (int i = 0; i < 2; ++i) {  // back, and then to a later state
+    restore_state(*dive.simulation, saved);
+    add();
+    EXPECT_NEAR(log.recorder().from_s(), 1.0, 1e-6);
+    EXPECT_EQ(log.recorder().figures()[0].path_m, 0.0);
+    dive.run(0.5, add);
+    EXPECT_NEAR(log.recorder().stepped_s(), 3.5 + 0.5 * i, 1e-6);
+    EXPECT_LT(log.recorder().figures()[0].path_m, before_m);
+  }
+}
+
 // More rows than may wait, and more than a chunk: a run that is killed then leaves nearly all.
 TEST(CsvLog, GrowsWhileTheRunGoesOn) {
   const TestDive dive = diver_and_vehicle();

@@ -64,6 +64,23 @@ TEST(MapTrails, AreBoundedAndTheMapHoldsThemAll) {
   EXPECT_EQ(trails.of("rov").size(), 1u);
 }
 
+TEST(MapLabels, OfNearParticipantsDoNotMeetAndStayOnTheMap) {
+  const PanelRect room{0.0f, 0.0f, 300.0f, 200.0f};
+  std::vector<PanelRect> labels;
+  for (const Vec2 at : {Vec2(150, 100), Vec2(155, 102), Vec2(150, 104), Vec2(290, 100),
+                        Vec2(292, 5), Vec2(5, 198)}) {
+    const PanelRect label = label_place(at, 8.0f, {70.0, 14.0}, room, labels);
+    ASSERT_FALSE(label.empty()) << at.x << ", " << at.y;
+    EXPECT_TRUE(label.x >= 0.0f && label.y >= 0.0f && label.right() <= 300.0f &&
+                label.bottom() <= 200.0f)
+        << at.x << ", " << at.y;
+    for (const PanelRect& other : labels) EXPECT_FALSE(overlap(label, other)) << at.x;
+    labels.push_back(label);
+  }
+  EXPECT_EQ(labels[0].x, 158.0f);  // right above where that is free
+  EXPECT_TRUE(label_place({150, 100}, 8.0f, {70.0, 14.0}, room, {room}).empty());
+}
+
 TEST(VehicleGauges, SayTheSharesOfTheThrustersLimits) {
   TestDive dive =
       dive_of("[physics]\n" + rov_text("position_m = [0, -10, 0]\nmission = { waypoints "

@@ -52,6 +52,23 @@ TEST_F(HelpPanel, EveryPageFitsTheWindow) {
   }
 }
 
+// Also where the window is narrower than a line of the list.
+TEST_F(HelpPanel, NoTextIsCutInASmallWindow) {
+  for (const auto& [width, height] : {std::pair(401.0f, 303.0f), {300, 200}, {160, 400}}) {
+    const std::size_t pages = draw(width, height, 0);
+    EXPECT_GT(pages, 1u);
+    for (std::size_t page = 0; page < pages; ++page) {
+      draw(width, height, page);
+      const ImGuiWindow* window = ImGui::FindWindowByName("###keys");
+      ASSERT_NE(window, nullptr);
+      EXPECT_LE(window->Pos.x + window->Size.x, width);
+      EXPECT_LE(window->Pos.y + window->Size.y, height);
+      EXPECT_LE(window->ContentSize.x, window->InnerRect.GetWidth() + 1.0f) << width;
+      EXPECT_LE(window->ContentSize.y, window->InnerRect.GetHeight() + 1.0f) << width;
+    }
+  }
+}
+
 // A key that does two things would do both.
 TEST(DiveActions, NoKeyIsOfTwoActionsButThoseThatShareAStick) {
   std::map<std::string, std::string> owner;

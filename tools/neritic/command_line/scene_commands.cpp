@@ -178,7 +178,7 @@ void add_dive(CLI::App& app, CommandLine& line) {
   command->add_option(
       "--hud", flags->hud,
       "a diver's instruments over the view: none, or any of corner, mask, wrist, "
-      "console (default of a scene with divers: corner in a window, wrist in a headset; key H)");
+      "console (in a window alone; default of a scene with divers: corner in a window, wrist in a headset; key H)");
   command->add_option("--diver", flags->diver, "whose instruments (default: the first diver)");
   command
       ->add_option("--units", flags->units, "units of the instruments: metric (default), imperial")
