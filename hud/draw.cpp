@@ -27,7 +27,7 @@ void draw_limit(Painter& p, const Box& box, const Shown& shown, double size, dou
     p.cell({box, "NO STOP", shown.no_stop.view(), "min", size, label_size, limit_tone(shown)});
     return;
   }
-  const double part = 0.58 * box.w;  // tenths of a metre take more room than minutes
+  const double part = 0.5 * box.w;
   p.cell({{box.x, box.y, part, box.h},
           with_unit("STOP", unit_names(shown.units).depth).view(),
           shown.stop.view(),
@@ -35,12 +35,7 @@ void draw_limit(Painter& p, const Box& box, const Shown& shown, double size, dou
           size,
           label_size,
           limit_tone(shown)});
-  p.cell({{box.x + part, box.y, box.w - part, box.h},
-          "min",
-          shown.stop_min.view(),
-          "",
-          size,
-          label_size});
+  p.cell({{box.x + part, box.y, part, box.h}, "min", shown.stop_min.view(), "", size, label_size});
 }
 
 void draw_wrist(Painter& p, const Shown& s) {
