@@ -2,6 +2,7 @@
 // off.
 #include <gtest/gtest.h>
 
+#include "diver/swimmer_constants.hpp"
 #include "tests/diver/swims.hpp"
 #include "tests/support/support.hpp"
 
