@@ -67,7 +67,9 @@ TEST(HudCondition, ItsPlateCoversNothingElse) {
       };
       const bool in_plate = x >= 332 && x < 948 && y >= 462 && y < 552;
       // There was nothing before.
-      if (in_plate) EXPECT_EQ(without.data[at + 3], 0) << x << " " << y;
+      if (in_plate) {
+        EXPECT_EQ(without.data[at + 3], 0) << x << " " << y;
+      }
       (in_plate ? inside : outside) += differs(without, with);
       told += in_plate && differs(with, rescue);
     }
