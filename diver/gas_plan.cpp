@@ -187,6 +187,15 @@ Result<std::vector<PlanGasUse>> gas_use(const DivePlanRequest& request, const Di
   return out;
 }
 
+namespace {
+
+// Whole litres, or what there is of one.
+std::string litres_text(double litres) {
+  return litres < 9.5 ? fmt::format("{:.1g}", litres) : fmt::format("{:.0f}", litres);
+}
+
+}  // namespace
+
 std::vector<PlanWarning> gas_warnings(const DivePlanRequest& request,
                                       const std::vector<PlanGasUse>& use) {
   std::vector<PlanWarning> out;
@@ -204,8 +213,9 @@ std::vector<PlanWarning> gas_warnings(const DivePlanRequest& request,
       out.push_back({PlanWarningKind::kTankTooSmall, *t.empty_min, *t.empty_m, u.used_l, held,
                      u.gas,
                      fmt::format("{}: used up at {:.0f} m, {:.0f} min; the plan takes {:.0f} L, "
-                                 "it holds {:.0f}, of which {:.0f} give no full breath there",
-                                 tank, *t.empty_m, *t.empty_min, u.used_l, held, weak)});
+                                 "it holds {}, of which {} give no full breath there",
+                                 tank, *t.empty_m, *t.empty_min, u.used_l, litres_text(held),
+                                 litres_text(weak))});
     } else if (u.minimum_l > 0.0 && t.then_bar < t.minimum_bar - 1e-6) {
       out.push_back(
           {PlanWarningKind::kMinimumGas, u.minimum_run_min, u.minimum_depth_m, t.then_bar,

@@ -118,6 +118,10 @@ TEST(GasPlan, ATankThatIsTooSmallIsOneLine) {
   // At that moment it is 5 bar over the water's 2.8.
   EXPECT_NEAR(tank_bar(kAir, {0, 10.0, 200.0}, 20.0 * (0.9 * 1.9 + (w.run_min - 0.9) * 2.8)), 7.8,
               1e-6);
+  const Planned tiny = gas_planned(dive, {{0, 0.1, 1.0}});
+  ASSERT_EQ(warnings(tiny).size(), 1u);
+  EXPECT_THAT(warnings(tiny)[0].text,
+              HasSubstr("it holds 0.1, of which 0.1 give no full breath there"));
 }
 
 TEST(GasPlan, MinimumGasIsOfTheLevelWhereItAndWhatIsUsedAreMost) {

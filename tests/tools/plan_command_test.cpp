@@ -274,6 +274,17 @@ TEST(PlanCommand, ALogOfNegativeDepthsIsRefusedOrTurnedOver) {
   EXPECT_EQ(said_by("plan --depth 30 --time 25 --depths-up").status, 2);
 }
 
+TEST(PlanCommand, ALogWithoutAnyDepthIsRefused) {
+  const test::ScratchFolder folder;
+  ASSERT_TRUE(write_text(folder / "none.csv", "time_s,depth_m\n0,nan\n1,nan\n2,nan\n").ok());
+  const PlanSaid refused = said_by("plan --log " + (folder / "none.csv").string() + " --out " +
+                                   (folder / "out").string());
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.error, HasSubstr("none.csv: found no depth that a dive has in 3 samples"));
+  EXPECT_EQ(refused.out, "");
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
 TEST(PlanCommand, ALogIsReplayedSampleBySample) {
   const test::ScratchFolder folder;
   std::string log = "time_s,depth_m,gas\n";

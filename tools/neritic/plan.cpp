@@ -136,6 +136,10 @@ Result<std::string> replay_a_log(const PlanFlags& flags) {
   NERITIC_TRY(const diver::DiveComputer computer, diver::DiveComputer::create(std::move(settings)));
   NERITIC_TRY(const diver::DiveComputerState start, log_start(flags, computer));
   const DiveTrace trace = trace_log(computer, start, log);
+  if (trace.end.refused >= log.samples.size())
+    return refusal(flags.log,
+                   fmt::format("no depth that a dive has in {} samples", log.samples.size()),
+                   "a log with depths in metres");
   const diver::DiveComputerSettings& s = computer.settings();
   if (!flags.out.empty()) {
     NERITIC_TRY_STATUS(make_folder(flags.out));
