@@ -1,5 +1,8 @@
 #include "engine/net/client_socket.hpp"
 
+#include <algorithm>
+#include <chrono>
+
 #include "engine/core/refusal.hpp"
 #include "engine/net/zmq_parts.hpp"
 
@@ -82,8 +85,15 @@ bool ClientSocket::send(const std::vector<Bytes>& frames) {
 std::optional<std::vector<std::vector<std::byte>>> ClientSocket::receive(int wait_ms) {
   void* const socket = parts_->dealer.get();
   zmq_pollitem_t items[] = {{socket, 0, ZMQ_POLLIN, 0}, {parts_->monitor.get(), 0, ZMQ_POLLIN, 0}};
-  if (zmq_poll(items, 2, wait_ms) <= 0) return std::nullopt;
-  parts_->read_monitor();
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(wait_ms);
+  do {
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+    if (zmq_poll(items, 2, std::max<long>(left.count(), 0)) <= 0) return std::nullopt;
+    const std::uint64_t before = parts_->closures;
+    parts_->read_monitor();
+    if (!(items[0].revents & ZMQ_POLLIN) && parts_->closures > before) return std::nullopt;
+  } while (!(items[0].revents & ZMQ_POLLIN));
   std::vector<std::vector<std::byte>> frames;
   for (bool more = true; more;) {
     ZmqMessage frame;

@@ -31,7 +31,7 @@ class ClientSocket {
 
   // False: too much waits to be sent.
   bool send(const std::vector<Bytes>& frames);
-  // The frames of the next message; nothing if none came for so long, or a connection began or
+  // The frames of the next message; nothing if none came for so long, or the connection
   // ended meanwhile.
   std::optional<std::vector<std::vector<std::byte>>> receive(int wait_ms);
 

@@ -84,8 +84,8 @@ bool ClockMap::Bucket::add(const Point& point) {
 
 void ClockMap::keep(TimeNs sent_ns, TimeNs arrived_ns) {
   const Point point{sent_ns, arrived_ns - sent_ns};
-  const bool sparse = !buckets_.empty() && sent_ns - newest_sent_ns_ > kSparse_ns;
-  const TimeNs bucket_ns = sparse ? kSparseBucket_ns : kBucket_ns;
+  sparse_ = !buckets_.empty() && sent_ns - newest_sent_ns_ > kSparse_ns;
+  const TimeNs bucket_ns = sparse_ ? kSparseBucket_ns : kBucket_ns;
   newest_sent_ns_ = buckets_.empty() ? sent_ns : std::max(newest_sent_ns_, sent_ns);
   const auto second = [&](TimeNs t) { return t / bucket_ns; };
   auto at = std::ranges::find_if(buckets_, [&](const Bucket& bucket) {
@@ -103,8 +103,10 @@ void ClockMap::keep(TimeNs sent_ns, TimeNs arrived_ns) {
   note_way(arrived_ns - to_host(sent_ns), arrived_ns);
 }
 
-// Whether enough of the quickest packets near this one took as long as it did.
+// Whether enough of the quickest packets near this one took as long as it did. Of a device that
+// sends less often too few come for others to be as quick: each counts.
 bool ClockMap::agreed(std::size_t bucket, std::size_t place) const {
+  if (sparse_) return true;
   const Point& point = buckets_[bucket].quick[place];
   std::size_t others = 0, agree = 0;
   const std::size_t end = std::min(bucket + kNearBuckets + 1, buckets_.size());

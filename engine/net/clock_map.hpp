@@ -4,7 +4,8 @@
 // one nearest on average (linear programming over the lower convex hull: Moon, Skelly, Towsley
 // 1999, Estimation and removal of clock skew from network delay measurements, INFOCOM), its slope
 // averaged over pairs of quick packets that lie far apart. Jitter does not move it; nor does a
-// packet whose time was corrupted, since a point counts if others near it agree. One way alone
+// packet whose time was corrupted, since a point counts if others near it agree (but of devices
+// that send less than four packets a second). One way alone
 // cannot tell a constant delay from an offset: the shortest way counts as none. Exchanges both ways
 // do tell (LSL, NTP), and then bound the offset from both sides. Plain value; one thread.
 #pragma once
@@ -81,6 +82,7 @@ class ClockMap {
   struct Packet {
     TimeNs sent_ns = 0, arrived_ns = 0;
   };
+  bool sparse_ = false;  // the newest packet came long after the one before
   std::vector<Packet> early_;  // the newest packets, if all came before they could
   TimeNs late_since_ns_ = 0;
   bool late_ = false;

@@ -68,6 +68,10 @@ void move_out(SceneDraft& draft, const Vec3& offset_m) {
   Scene& scene = draft.scene;
   if (scene.current) scene.current->origin_m += offset_m;
   if (scene.ambient && scene.ambient->bottom_depth_m) *scene.ambient->bottom_depth_m -= offset_m.y;
+  if (scene.ambient && scene.ambient->skylight) {
+    scene.ambient->skylight->low_m += offset_m;
+    scene.ambient->skylight->high_m += offset_m;
+  }
   if (scene.world_from_lab) scene.world_from_lab->position_m += offset_m;
   if (scene.water) move_out(*scene.water, offset_m);
   const auto moved = [&offset_m](Mount mount) {

@@ -76,8 +76,8 @@ TEST(ClockMap, AClockThatIsSetAnewIsFoundAgain) {
 // A bit of a packet's time flips on the way; of every other device that of the first packet too.
 TEST(ClockMap, PacketsWithAWrongTimeDoNotMoveIt) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed)
-    for (const double rate_hz : {240.0, 50.0, 2.0}) {
-      const double seconds = rate_hz < 10.0 ? 300.0 : 60.0, corrupt = 0.02;
+    for (const double rate_hz : {240.0, 50.0}) {
+      const double seconds = 60.0, corrupt = 0.02;
       const TimeNs offset_ns = -15'550'842'000'000;
       ClockMap map;
       double worst_s = 0.0;

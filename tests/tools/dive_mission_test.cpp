@@ -68,13 +68,15 @@ TEST_F(DivePhysics, AMissionThatIsDoneInBeliefAloneIsMissedAndEndsWithStatusOne)
   ASSERT_TRUE(runs.ok()) << json.out;
   int missed = 0;
   for (const auto& run : *runs) {
-    EXPECT_EQ(run["arrived"], 1);
-    ASSERT_EQ(run["true_misses_m"].size(), 1u);
-    const double miss_m = run["true_misses_m"][0];
-    EXPECT_LE(miss_m, run["largest_navigation_error_m"].get<double>() + 0.15);
-    EXPECT_EQ(run["truly_arrived"], miss_m <= 0.65 ? 1 : 0);
-    EXPECT_EQ(run["status"], miss_m <= 0.65 ? "done" : "missed");
-    missed += miss_m > 0.65 ? 1 : 0;
+    ASSERT_EQ(run["true_misses_m"].size(), run["arrived"].get<std::size_t>());
+    int truly = 0;
+    for (const auto& miss_m : run["true_misses_m"]) {
+      EXPECT_LE(miss_m.get<double>(), run["largest_navigation_error_m"].get<double>() + 0.15);
+      truly += miss_m.get<double>() <= 0.65 ? 1 : 0;
+    }
+    EXPECT_EQ(run["truly_arrived"], truly);
+    EXPECT_EQ(run["status"], truly == run["arrived"] ? "done" : "missed");
+    missed += truly < run["arrived"].get<int>() ? 1 : 0;
   }
   EXPECT_GT(missed, 0);
 }

@@ -132,7 +132,7 @@ TEST(Experiment, RefusesBadScenariosInOneLine) {
     EXPECT_EQ(std::count(said.text.begin(), said.text.end(), '\n'), 1) << said.text;
     EXPECT_FALSE(fs::exists(folder / "out" / "runs.jsonl"));
   };
-  refused("echo_sonder", "accepted: echo_sounder (the nearest)");
+  refused("echo_sonder", "echo_sounder (the nearest), ");
   refused("echo_sounder --set slop_deg=3", "slope_deg (the nearest)");
   refused("echo_sounder --set slope_deg=30", "accepted: a number in [0, 12]");
   refused("echo_sounder --set bins=1.5", "a whole number");
