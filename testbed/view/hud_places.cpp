@@ -23,8 +23,9 @@ bool covers_view(const hud::Layout& layout) {
 
 double height_in(const hud::Layout& layout, double width, double height) {
   const double aspect = static_cast<double>(layout.width_px) / layout.height_px;
-  const double across = width / aspect;
-  if (covers_view(layout)) return std::max(1.0, std::round(std::min(height, across)));
+  // Whole pixels that are no wider than the window.
+  const double across = std::floor(width / aspect + 1e-6);
+  if (covers_view(layout)) return std::max(1.0, std::min(height, across));
   const double wanted = std::max(layout.window.height * height, kLeastScale * layout.height_px);
   return std::max(1.0, std::round(std::min({wanted, kMostOfView * height, across})));
 }
