@@ -82,7 +82,7 @@ class ClockMap {
   struct Packet {
     TimeNs sent_ns = 0, arrived_ns = 0;
   };
-  bool sparse_ = false;  // the newest packet came long after the one before
+  bool sparse_ = false;        // the newest packet came long after the one before
   std::vector<Packet> early_;  // the newest packets, if all came before they could
   TimeNs late_since_ns_ = 0;
   bool late_ = false;

@@ -91,7 +91,7 @@ struct LightImages {
   graph::ImageHandle caustics;
   graph::ImageHandle shafts;                // of the sun's light in the water (shaders/shafts.comp)
   std::optional<ShaftInputs> shaft_inputs;  // where there are shafts: what lights particles too
-  graph::ImageHandle skylight;  // of the light from above (shaders/skylight.comp)
+  graph::ImageHandle skylight;              // of the light from above (shaders/skylight.comp)
   graph::ImageHandle lamp_maps;
   shared::LampShadows lamp_shadows{};  // of lamp_maps
 };
@@ -254,9 +254,9 @@ class Renderer {
                                             std::uint32_t height, std::uint32_t layers);
   // The mean of each 4 x 4 pixels of an image of shares, whose alpha tells distances.
   Result<graph::ImageHandle> declare_visibility_blur(graph::FrameGraph& graph,
-                                                     const std::string& name,
-                                                     graph::ImageHandle in, std::uint32_t width,
-                                                     std::uint32_t height, std::uint32_t layers);
+                                                     const std::string& name, graph::ImageHandle in,
+                                                     std::uint32_t width, std::uint32_t height,
+                                                     std::uint32_t layers);
   // A pass of focus or shutter: images, each at its binding, and numbers make another image.
   struct ExposurePass {
     const char* name;    // of the pass

@@ -26,9 +26,8 @@ inline constexpr auto kSunShadowKeys =
 inline constexpr auto kCausticsKeys =
     std::to_array<Key>({"waves", "wind_m_s", "direction_deg", "tile_m", "texels"});
 inline constexpr auto kShaftKeys = std::to_array<Key>({"samples", "reach_m"});
-inline constexpr auto kAmbientKeys =
-    std::to_array<Key>({"bottom_color", "bottom_depth_m", "occlusion_m", "occlusion_samples",
-                        "skylight"});
+inline constexpr auto kAmbientKeys = std::to_array<Key>(
+    {"bottom_color", "bottom_depth_m", "occlusion_m", "occlusion_samples", "skylight"});
 inline constexpr auto kSkylightKeys = std::to_array<Key>({"box_m", "cell_m", "samples"});
 
 inline constexpr auto kWaterKeys =

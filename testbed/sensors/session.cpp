@@ -156,16 +156,11 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
     work.poses = motions_of(participants_of(scene_), motion, request.time_s);
   NERITIC_TRY(const render::DeformedGeometry deformed,
               renderer_->declare_deform(graph, *gpu_scene_, work.state, &work.deform_need));
-  const FrameParts parts{graph,         device_,
-                         *renderer_,    scene_,
-                         *gpu_scene_,   motion,
-                         work.state,    deformed,
-                         readback_,     request.seed.value_or(scene_.seed),
-                         work.light,    *sun_maps_,
-                         *skylight_,
-                         moving_,       still_,
-                         request.frame, work.deform_need,
-                         *snow_};
+  const FrameParts parts{
+      graph,         device_,          *renderer_, scene_,    *gpu_scene_,
+      motion,        work.state,       deformed,   readback_, request.seed.value_or(scene_.seed),
+      work.light,    *sun_maps_,       *skylight_, moving_,   still_,
+      request.frame, work.deform_need, *snow_};
   const auto add = [&](const std::string& label, const ViewsRequest& set, std::size_t index,
                        auto& works, std::vector<SensorFrame::Views>& out) -> Status {
     works.push_back(std::make_unique<FrameWork::Picture>());

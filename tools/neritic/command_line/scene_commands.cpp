@@ -175,10 +175,10 @@ void add_dive(CLI::App& app, CommandLine& line) {
                    "a picture (.png) of the frames' phases, passes and resolution, with its data "
                    "as .plot.json")
       ->check(png_file);
-  command->add_option(
-      "--hud", flags->hud,
-      "a diver's instruments over the view: none, or any of corner, mask, wrist, "
-      "console (in a window alone; default of a scene with divers: corner in a window, wrist in a headset; key H)");
+  command->add_option("--hud", flags->hud,
+                      "a diver's instruments over the view: none, or any of corner, mask, wrist, "
+                      "console (in a window alone; default of a scene with divers: corner in a "
+                      "window, wrist in a headset; key H)");
   command->add_option("--diver", flags->diver, "whose instruments (default: the first diver)");
   command
       ->add_option("--units", flags->units, "units of the instruments: metric (default), imperial")
