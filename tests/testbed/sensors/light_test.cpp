@@ -172,10 +172,11 @@ TEST_F(Light, SkylightLeavesOpenWaterAsItIs) {
 // A thin upright sheet in air with the sun behind it, low: of its light the eye gets what the sheet
 // lets through, the share t of albedo / pi; a sheet of none is lit by the sky alone.
 TEST_F(Light, AThinSheetShinesWithTheSunBehindIt) {
-  const auto level = [&](float through) {
+  const auto level = [&](float through, bool shadows = false) {
     scene::Scene scene;
     scene.path = "test";
     scene.sun = scene::Sun{.elevation_rad = radians(20.0)};  // in the north: behind the sheet
+    if (shadows) scene.sun->shadows = scene::SunShadows{};
     add_box(scene, {4.0, 4.0, 0.002}, {0.0, 0.0, -3.0});
     scene::Model model = *scene.models[0];
     model.materials[0].diffuse_transmission = through;
@@ -193,6 +194,7 @@ TEST_F(Light, AThinSheetShinesWithTheSunBehindIt) {
   const int none = level(0.0f), half = level(0.5f), all = level(1.0f);
   EXPECT_GT(half, none + 30);
   EXPECT_GT(all, half + 15);
+  EXPECT_NEAR(level(1.0f, true), all, 3) << "the sheet throws no shadow on itself";
 }
 
 // Light on the levels below a tile.
