@@ -17,8 +17,8 @@ constexpr double kShares[] = {0.2, 0.3, 0.4, 0.5};
 // A device that sends less often, as a heart strap, is remembered for ten minutes, so that there
 // are as many quick packets among those of its last buckets.
 constexpr TimeNs kSparse_ns = 250'000'000, kSparseBucket_ns = 5 * ClockMap::kBucket_ns;
-// Packets agree within this, and more the longer they lie apart. So large a part of those near one
-// must: of many a few agree by chance.
+// Two packets agree if their ways differ by less than this, which grows with their distance in
+// time. A packet counts if this share of those near it agrees: of many a few agree by chance.
 constexpr double kAgree_ns = 250'000.0, kAgreeDrift = 20e-6, kAgreeing = 0.03;
 constexpr std::size_t kNearBuckets = 4;
 
@@ -84,15 +84,15 @@ bool ClockMap::Bucket::add(const Point& point) {
 
 void ClockMap::keep(TimeNs sent_ns, TimeNs arrived_ns) {
   const Point point{sent_ns, arrived_ns - sent_ns};
-  sparse_ = !buckets_.empty() && sent_ns - newest_sent_ns_ > kSparse_ns;
-  const TimeNs bucket_ns = sparse_ ? kSparseBucket_ns : kBucket_ns;
+  const bool sparse = !buckets_.empty() && sent_ns - newest_sent_ns_ > kSparse_ns;
+  const TimeNs bucket_ns = sparse ? kSparseBucket_ns : kBucket_ns;
   newest_sent_ns_ = buckets_.empty() ? sent_ns : std::max(newest_sent_ns_, sent_ns);
   const auto second = [&](TimeNs t) { return t / bucket_ns; };
   auto at = std::ranges::find_if(buckets_, [&](const Bucket& bucket) {
     return second(bucket.quick.front().sent_ns) >= second(sent_ns);
   });
   if (at == buckets_.end() || second(at->quick.front().sent_ns) != second(sent_ns))
-    at = buckets_.insert(at, Bucket());
+    at = buckets_.insert(at, Bucket{.sparse = sparse});
   if (at->add(point)) {
     auto place = static_cast<std::size_t>(at - buckets_.begin());
     for (; buckets_.size() > kBuckets; place -= std::min<std::size_t>(place, 1))
@@ -106,7 +106,7 @@ void ClockMap::keep(TimeNs sent_ns, TimeNs arrived_ns) {
 // Whether enough of the quickest packets near this one took as long as it did. Of a device that
 // sends less often too few come for others to be as quick: each counts.
 bool ClockMap::agreed(std::size_t bucket, std::size_t place) const {
-  if (sparse_) return true;
+  if (buckets_[bucket].sparse) return true;
   const Point& point = buckets_[bucket].quick[place];
   std::size_t others = 0, agree = 0;
   const std::size_t end = std::min(bucket + kNearBuckets + 1, buckets_.size());

@@ -61,6 +61,7 @@ class ClockMap {
   struct Bucket {
     std::array<Point, 16> quick;
     std::size_t count = 0;
+    bool sparse = false;          // its first packet came long after the one before
     std::optional<Point> agreed;  // the quickest that others near it agree with
     bool add(const Point& point);
   };
@@ -82,7 +83,6 @@ class ClockMap {
   struct Packet {
     TimeNs sent_ns = 0, arrived_ns = 0;
   };
-  bool sparse_ = false;        // the newest packet came long after the one before
   std::vector<Packet> early_;  // the newest packets, if all came before they could
   TimeNs late_since_ns_ = 0;
   bool late_ = false;
