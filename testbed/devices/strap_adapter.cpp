@@ -59,8 +59,10 @@ void StrapAdapter::take_rate(net::Bytes bytes, TimeNs arrived_ns, Outlet& out) {
   // Packets are missing: nobody knows the beats between.
   if (since_s > 2.0 * kRatePeriod_s) {
     counts_.lost += static_cast<std::uint64_t>(std::lround(std::min(since_s, 1e6))) - 1;
-    if (by_intervals_ && worn && since_s > counted_s)
+    if (by_intervals_ && worn && since_s > counted_s) {
       intervals_.skip(std::min(since_s - counted_s, kLongestGap_s));
+      interval_ns_ = arrived_ns;
+    }
   }
   if (!packet->intervals.empty()) {
     // Nobody knows the beats while the rate counted.
@@ -74,7 +76,7 @@ void StrapAdapter::take_rate(net::Bytes bytes, TimeNs arrived_ns, Outlet& out) {
   }
   if (!worn) {
     intervals_.skip(std::clamp(since_s, 1e-3, kLongestGap_s));
-    if (!by_intervals_ && interval_ns_ > 0) interval_ns_ = arrived_ns;
+    if (interval_ns_ > 0) interval_ns_ = arrived_ns;
   } else {
     for (const std::uint16_t interval : packet->intervals)
       intervals_.push_interval(net::kRrUnit_s * interval);
