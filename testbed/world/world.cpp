@@ -366,6 +366,10 @@ Status World::restore(std::span<const std::byte> bytes) {
     parts.sequences.clear();
     parts.holders.clear();
     parts.messages.clear();
+    const auto modems = parts.world().modems().all();
+    for (std::size_t i = 0; i < modems.size(); ++i)
+      parts.messages[parts.world().streams().id(
+          modems[i].sort, modems[i].owner, PayloadKind::kSend)] = saved.inputs.modems()[i].queue;
   }
   parts.begin_loop();
   return status;

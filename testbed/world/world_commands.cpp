@@ -166,13 +166,19 @@ Status World::Parts::push(SourceId source, StreamId stream, const Payload& paylo
                    fmt::format("a stamp {:.3g} s ahead of the newest step",
                                1e-9 * static_cast<double>(captured_ns - now)),
                    "finite, plausible samples in their order, up to 0.5 s old");
-  if (std::holds_alternative<ModemSend>(payload) && !messages[stream].add(newest().step))
+  ModemQueue queue;
+  const bool sends = std::holds_alternative<ModemSend>(payload);
+  if (sends) queue = messages[stream];
+  if (sends && !queue.add(newest().step))
     return refusal(name, "one more message",
                    fmt::format("up to {} that wait to be sent; {} go on with each step",
                                ModemQueue::kMost, ModemQueue::kInStep));
   const SampleVerdict verdict = physics->inbox().push(
       {{stream, source, sequences[{source, stream}]++, captured_ns, now}, payload});
-  if (verdict == SampleVerdict::kAccepted) return {};
+  if (verdict == SampleVerdict::kAccepted) {
+    if (sends) messages[stream] = queue;
+    return {};
+  }
   return refusal(name, fmt::format("a sample that is {}", name_of(verdict)),
                  "finite, plausible samples in their order, up to 0.5 s old");
 }
