@@ -121,7 +121,7 @@ Result<std::string> info(const RecordingFlags& flags) {
   return text;
 }
 
-// Of one that cannot be replayed: why not, and what can be done with it.
+// How many steps can be replayed; else why none can, and what else can be done.
 std::string steps_words(const Result<testbed::SampleLog>& log, const std::string& file) {
   if (log.ok()) return fmt::format(", {} steps to replay", log->steps());
   std::string why = log.error().message;
@@ -162,9 +162,9 @@ Result<std::string> repair(const RecordingFlags& flags) {
   if (std::filesystem::is_regular_file(flags.out, ignored))
     return refusal("--out", printable(flags.out.string()) + ", which is there already",
                    "another name");
-  // While it is written it has the name of a killed run's recording, which may be the damaged one.
+  // While it is written a file has the name of a killed run's recording, which may be there.
   std::filesystem::path made = flags.out;
-  if (std::filesystem::equivalent(flags.file, part_of(flags.out), ignored)) made += ".repaired";
+  if (!std::filesystem::exists(flags.out, ignored)) made += ".repaired";
   NERITIC_TRY(const McapReport report, recording::repair_mcap(flags.file, made));
   if (made != flags.out) {
     std::error_code error;
