@@ -30,7 +30,7 @@ struct MissionState {
   // The pilot of the last control period: 0 the mission, 1 a pilot, 2 a setpoint from outside, 3 a
   // velocity from outside, 4 forces of thrusters from outside.
   std::uint64_t piloted = 0;
-  double speed_n = 0.0;  // that holds its speed over ground (rov::ControlState)
+  double speed_n = 0.0;  // of the observer (rov::ControlState); 0: nothing is learnt
   Vec3 lean_ned_m{0.0};  // of the controller's place against a steady push (rov::lean)
   // The controller's set value.
   Vec3 wanted_ned_m{0.0};

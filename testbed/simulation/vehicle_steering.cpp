@@ -55,6 +55,7 @@ bool PhysicsWorld::steer(std::size_t index, const StepCall& call, double time_s)
   const bool rests = wrench_by == Authority::kNobody || setpoint_by == Authority::kNobody;
   if (!piloted && !given && (rests || !vehicle.mission)) {
     state.command_n = {};
+    state.mission.speed_n = 0.0;  // learnt of a motion that is over
     return true;
   }
   const rov::State known = known_state(call.after, index, time_s);
@@ -93,11 +94,13 @@ bool PhysicsWorld::steer(std::size_t index, const StepCall& call, double time_s)
                              : commands_by(rov::Allocator(vehicle.vehicle, failed));
   const auto asked_n = commands.thruster_n;
   rov::drive(vehicle.file, commands, battery(call.after, index));
-  std::array<double, rov::kMaxThrusters> missing_n{};
-  for (std::size_t i = 0; i < missing_n.size(); ++i)
-    missing_n[i] = asked_n[i] - commands.thruster_n[i];
-  rov::unlearn_push(vehicle.vehicle, vehicle.file.gains, setpoint, known,
-                    vehicle.kind.allocator.wrench_of(missing_n), control);
+  if (setpoint.over_ground) {
+    std::array<double, rov::kMaxThrusters> missing_n{};
+    for (std::size_t i = 0; i < missing_n.size(); ++i)
+      missing_n[i] = asked_n[i] - commands.thruster_n[i];
+    rov::unlearn_push(vehicle.vehicle, vehicle.file.gains, setpoint, known,
+                      vehicle.kind.allocator.wrench_of(missing_n), control);
+  }
   if (!sim::all_finite(commands)) return false;
   state.command_n = commands.thruster_n;
   state.integral = control.integral;
