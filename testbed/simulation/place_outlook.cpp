@@ -28,12 +28,30 @@ bool in_air(const PhysicsVehicle& vehicle, std::size_t waypoint, const Vec3& pla
   return true;
 }
 
-// The bed over a place, as a sensor that looks up from there would meet it.
+// The first face of the bed over a place that lies below the bed: under one face, or three. Under
+// an overhang there are two.
 std::optional<sim::RayHit> bed_over(const PhysicsWorld& world, const Vec3& place_ned_m) {
-  auto hit = world.solid().cast(rov::world_from_ned(place_ned_m), Vec3(0.0, 1.0, 0.0),
-                                std::max(place_ned_m.z, 1.0));
-  if (hit && !world.is_bed(hit->label)) hit.reset();
-  return hit;
+  constexpr int kMostFaces = 64;
+  constexpr double kPast_m = 1e-3;
+  std::optional<sim::RayHit> first;
+  int faces = 0;
+  const Vec3 from_m = rov::world_from_ned(place_ned_m);
+  double up_m = 0.0;
+  for (int i = 0; i < kMostFaces; ++i) {
+    const auto hit = world.solid().cast(from_m + Vec3(0.0, up_m, 0.0), Vec3(0.0, 1.0, 0.0),
+                                        std::max(place_ned_m.z - up_m, 1.0));
+    if (!hit) break;
+    if (world.is_bed(hit->label)) {
+      ++faces;
+      if (!first) {
+        first = hit;
+        first->distance_m += up_m;
+      }
+    }
+    up_m += hit->distance_m + kPast_m;
+  }
+  if (faces % 2 == 0) first.reset();
+  return first;
 }
 
 bool in_solid(const PhysicsWorld& world, const PhysicsVehicle& vehicle, std::size_t waypoint,

@@ -1,4 +1,4 @@
-// What is wrong with the places of a vehicle's mission, told before a dive (mission_outlook.hpp): a
+// Faults of the places of a vehicle's mission, told before a dive (mission_outlook.hpp): a
 // line each. Pure functions; any thread.
 #pragma once
 
