@@ -1,5 +1,6 @@
 #include "testbed/instruments/instrument_data.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "diver/frames.hpp"
@@ -47,7 +48,9 @@ void read_computer(const PhysicsHuman& human, const HumanPhysics& state, hud::Di
 bool can_be_breathed(const diver::Body& body, const diver::HumanState& state, std::size_t tank) {
   const double ambient_pa = diver::pressure_at(body, state.root.position_ned_m.z);
   const double oxygen_bar = 1e-5 * ambient_pa * body.tanks[tank].mix.oxygen;
-  return oxygen_bar >= diver::kLeastOxygen_bar && oxygen_bar <= diver::kMostOxygen_bar &&
+  // A diver in a mountain lake is used to its air, as in diver/gas_switch.cpp.
+  const double used_to = std::min(body.surface_pa / diver::kSurfacePressure_pa, 1.0);
+  return oxygen_bar >= used_to * diver::kLeastOxygen_bar && oxygen_bar <= diver::kMostOxygen_bar &&
          diver::tank_pressure(body, state.life.tanks, tank) >= ambient_pa + diver::kWeakTank_pa;
 }
 
@@ -65,7 +68,7 @@ void read_gas(const PhysicsHuman& human, const HumanPhysics& state, hud::DiveDat
   out.gas_min = gas.remaining_s / 60.0;
   out.out_of_gas = state.human.life.lungs.unfed_s > 0.0;
   for (std::size_t i = 0; i < human.body.tank_count; ++i)
-    out.other_gas |= i != tank && can_be_breathed(human.body, state.human, i);
+    out.other_gas = out.other_gas || (i != tank && can_be_breathed(human.body, state.human, i));
 }
 
 void read_body(const PhysicsHuman& human, const HumanPhysics& state, hud::DiveData& out) {
