@@ -59,6 +59,20 @@ MotionAt motion_along(const Mount& mount, double time_s, const SimulatedMotion* 
 
 }  // namespace
 
+const char* name_of(Knowledge known) {
+  switch (known) {
+    case Knowledge::kExact:
+      return "exact";
+    case Knowledge::kBetween:
+      return "between";
+    case Knowledge::kPredicted:
+      return "predicted";
+    case Knowledge::kHeld:
+      return "held";
+  }
+  return "";
+}
+
 CarriedThing::CarriedThing(const Scene& scene, const Mount& mount) : chain_{mount} {
   while (chain_.back().object >= 0) {
     NERITIC_CHECK(chain_.size() <= scene.objects.size(), "{} mounts", chain_.size());

@@ -20,6 +20,8 @@ enum class Knowledge {
   kPredicted,  // from the newest state on, at its velocity
   kHeld,       // outside what is known: the oldest state, or the prediction at its limit
 };
+// "exact", "between", "predicted" or "held".
+const char* name_of(Knowledge known);
 
 struct MotionAt {
   Motion motion;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kColumns =
     "frame,time_s,name,kind,x_m,y_m,z_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s,wx_rad_s,wy_rad_s,"
-    "wz_rad_s\n";
+    "wz_rad_s,known\n";
 
 std::string numbers(const Vec3& v, char before) {
   return fmt::format("{0}{1:.10g}{0}{2:.10g}{0}{3:.10g}", before, v.x, v.y, v.z);
@@ -47,9 +47,9 @@ Status TrajectoryFiles::add(const FrameResult& frame) {
   for (std::size_t i = 0; i < participants_.size(); ++i) {
     const Motion& motion = frame.poses[i].motion;
     NERITIC_TRY_STATUS(csv_.append(fmt::format(
-        "{},{:.9f},{},{}{}{}{}\n", frame.frame, frame.time_s, participants_[i].name,
+        "{},{:.9f},{},{}{}{}{},{}\n", frame.frame, frame.time_s, participants_[i].name,
         participants_[i].kind, pose_numbers(motion.pose, ','), numbers(motion.velocity_m_s, ','),
-        numbers(motion.angular_velocity_rad_s, ','))));
+        numbers(motion.angular_velocity_rad_s, ','), name_of(frame.poses[i].known))));
     NERITIC_TRY_STATUS(
         tum_[i].append(fmt::format("{:.9f}{}\n", frame.time_s, pose_numbers(motion.pose, ' '))));
   }

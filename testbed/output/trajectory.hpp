@@ -4,7 +4,8 @@
 //
 // World axes: right-handed, y up, metres, the still surface at y = 0. A pose is world_from_NAME:
 // cameras and sonars look along their -z, x to the right, y up; models face -z. Velocities are of
-// NAME's origin and rotation in world axes.
+// NAME's origin and rotation in world axes. The last column tells how a pose is known
+// (scene::Knowledge): of the state of just that time, between two states, predicted or held.
 #pragma once
 
 #include <filesystem>

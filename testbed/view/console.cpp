@@ -109,10 +109,13 @@ void Console::look(const scene::MotionSource& motion, double time_s, const DiveP
   rows_.clear();
   marks_.clear();
   for (const Participant& one : participants_) {
-    const Motion at = motion.at(one.mount, time_s).motion;
-    rows_.push_back({one.name, pilot.doing(static_cast<std::size_t>(one.mount.object)),
-                     -at.pose.position_m.y, glm::length(at.velocity_m_s),
-                     glm::distance(at.pose.position_m, eye_m)});
+    const scene::MotionAt seen = motion.at(one.mount, time_s);
+    const Motion& at = seen.motion;
+    std::string doing = pilot.doing(static_cast<std::size_t>(one.mount.object));
+    if (seen.known == scene::Knowledge::kHeld && seen.predicted_s > 0.0)
+      doing += fmt::format("{}no state for {:.1f} s", doing.empty() ? "" : ", ", seen.predicted_s);
+    rows_.push_back({one.name, std::move(doing), -at.pose.position_m.y,
+                     glm::length(at.velocity_m_s), glm::distance(at.pose.position_m, eye_m)});
     marks_.push_back({one.name, at.pose.position_m, -course_of(at.pose.rotation)});
   }
   trails_.add(marks_, time_s);

@@ -58,6 +58,7 @@ def check_trajectory():
                          encoding="ascii")
     assert set(rows["name"]) == {"sub", "sub_lens", "eyes", "ears"}
     kinds = dict(zip(rows["name"], rows["kind"]))
+    assert set(rows["known"]) == {"exact"}  # by tracks
     assert kinds == {"sub": "object", "sub_lens": "camera", "eyes": "camera", "ears": "sonar"}
     for name in kinds:
         mine = rows[rows["name"] == name]
