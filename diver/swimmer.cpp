@@ -159,7 +159,7 @@ SwimGoal hover_goal(const Body& body, SwimGoal goal, const HumanState& state,
     swimmer.goes_back = kRightsHimself;
   else if (off_m > kAdrift_m && swimmer.goes_back == 0)
     swimmer.goes_back = kGoesBack;
-  // Level again, righting is done: so fast, a diver would circle around a near place for ever.
+  // Level again, righting is done: at its speed a diver would circle around a near place for ever.
   const bool there = off_m < near_m || swimmer.goes_back == kRightsHimself;
   if (there && tilt_rad < 0.5 * kTilted_rad) swimmer.goes_back = 0;
   const bool steep = swimmer.goes_back == kRightsHimself && tilt_rad > kSteep_rad;

@@ -62,7 +62,8 @@ enum class Clip {
 Vec6 control_wrench(const Vehicle& vehicle, const ControlGains& gains, const Setpoint& setpoint,
                     const State& state, ControlState& control, Clip clip = Clip::kEachAxis);
 
-// The drag of a vehicle that moves so through the water, as a wrench with its motion, body axes.
+// The wrench that balances the drag at this velocity through the water, along the motion, body
+// axes.
 Vec6 drag_of(const Vehicle& vehicle, const Vec3& velocity_m_s);
 
 // The same, clipped in each axis, as thruster commands. Precondition: the allocator is of this

@@ -22,8 +22,8 @@ WrenchParts parted_wrench(const Vehicle& vehicle, const ControlGains& gains,
                           const Setpoint& setpoint, const State& state, ControlState& control);
 
 // control_inputs() with these priorities, each part by gains.saturation beside those before it. A
-// speed over ground (Setpoint::over_ground) is held by a push that control.speed_n learns, of what
-// the thrusters give alone.
+// speed over ground (Setpoint::over_ground) is held by a push that is learnt (control.speed_n);
+// force that the thrusters did not give is not learnt.
 Inputs level_inputs(const Vehicle& vehicle, const Allocator& allocator, const ControlGains& gains,
                     const Setpoint& setpoint, const State& state, ControlState& control);
 // After it: the part of its wrench that the thrusters do not give, for want of voltage.

@@ -24,8 +24,8 @@ float distance_at(ivec3 at) {
 // Distances that differ by less, as a factor, are one surface's.
 const float kSameSurface = 1.02;
 
-// The spot of a place as far as it can spread here: from behind a surface nothing spreads farther than that
-// surface's own spot.
+// In the search for the widest spot: the spot of a place as far as it can spread here. From behind a surface
+// nothing spreads farther than that surface's own spot.
 float spot_here(ivec3 other, float own_m, float own_px) {
   float other_m = distance_at(other);
   float spot_px = max(spot_radius_px(focus, other_m), 0.5);
@@ -50,8 +50,8 @@ void main() {
       float spot_px = spot_here(ivec3(clamp(at.xy + offset, ivec2(0), size - 1), at.z), own_m, own_px);
       if (spot_px > 0.5 * r) far_px = max(far_px, spot_px);
     }
-  // What is nearer spreads over this pixel and covers a share of it. The pixel's own surface covers a share of the
-  // rest, and what lies behind it shows through: as the samples of its own spot find the two.
+  // Nearer surfaces spread over this pixel and cover a share of it. The pixel's own surface covers a share of the
+  // rest, and surfaces behind it show through; the samples within its own spot find both shares.
   vec4 nearer = vec4(0.0), behind = vec4(0.0);
   // A pixel is 1 / pi of the disk of radius 1.
   vec4 own = vec4(texelFetch(hdr_image, at, 0).rgb, 1.0) * (0.3183 / (own_px * own_px));
@@ -64,6 +64,7 @@ void main() {
     ivec3 other = ivec3(clamp(at.xy + offset, ivec2(0), size - 1), at.z);
     float other_m = distance_at(other);
     bool is_behind = other_m > own_m * kSameSurface;
+    // All that lies behind within the own spot shows through it.
     float spot_px = is_behind ? own_px : max(spot_radius_px(focus, other_m), 0.5);
     float reaches = clamp(spot_px - r + 0.5, 0.0, 1.0);
     vec4 spread = vec4(texelFetch(hdr_image, other, 0).rgb, 1.0) * (reaches * each_px2 / (spot_px * spot_px));

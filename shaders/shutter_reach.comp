@@ -47,7 +47,7 @@ void main() {
   if (tile.x >= tiles.x || tile.y >= tiles.y) return;
   vec2 times = vec2(1e9, -1e9);
   for (int i = 0; i < 4; ++i) {
-    float time = row_time((vec2(tile.xy) + vec2(i & 1, i >> 1)) / vec2(shutter.tiles));
+    float time = row_time((vec2(tile.xy) + vec2(i & 1, i >> 1)) / shutter.tiles);
     times = vec2(min(times.x, time), max(times.y, time));
   }
   times += vec2(-0.5, 0.5) * shutter.exposed;

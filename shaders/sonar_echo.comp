@@ -147,7 +147,7 @@ bool is_clear(ivec2 beam, vec3 direction, float leg_m, uint through_class) {
     if (!(range_m > 0.0) || range_m > nearest_m) return true;
     if (kLarger != 0) {
       uint entry = larger_of(texelFetch(direct_label, at, 0).y);
-      if (entry < c.drawn_larger && (drawn_larger[entry].views & kSonarLargerDirect) != 0 &&
+      if (entry < c.drawn_larger && drawn_larger[entry].direct != 0 &&
           !meets(drawn_larger[entry], direction))
         return true;
     }

@@ -4,8 +4,7 @@
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The mean of the 4 x 4 pixels round one whose taps complete each other, but not across edges of distance, nor
-// between surfaces that face the sun and those that do not.
+// The mean of the 4 x 4 pixels round one whose taps complete each other, but not across edges of the key (alpha).
 #include "shared/lighting.h"
 #include "shared/visibility.h"
 

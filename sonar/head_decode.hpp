@@ -11,11 +11,11 @@
 
 namespace neritic::sonar {
 
-// keys: [n_range][columns of head.samples], or empty. Class of each bin's strongest return
-// [n_range][beams]: that of the beam's own columns, its margin's not counted. 0: nothing.
-// Whether a bin's strongest return is of what has no class.
+// Whether some bin's strongest return is of a thing without a class.
 bool any_unclassed(std::span<const std::uint32_t> keys);
 
+// keys: [n_range][columns of head.samples], or empty. Class of each bin's strongest return
+// [n_range][beams]: that of the beam's own columns, its margin's not counted. 0: nothing.
 std::vector<std::uint16_t> beam_labels(const Head& head, std::span<const std::uint32_t> keys);
 
 // The records of the direct gather and of each mirror's, [n_elevation][columns], by energy: after

@@ -24,7 +24,7 @@ class GrowingFile {
   static constexpr std::size_t kChunk_bytes = 1 << 16;
   static constexpr TimeNs kChunk_ns = 1'000'000'000;
 
-  // Opens nothing: the first chunk does, and an error then ends the run.
+  // Opens nothing: the first chunk does.
   explicit GrowingFile(std::filesystem::path path) : path_(std::move(path)) {}
 
   // One piece each. After an Error all further calls return it.

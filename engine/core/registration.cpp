@@ -181,7 +181,7 @@ std::string units_of(double scale) {
 
 std::string misfit(std::span<const PointPair> pairs, RegistrationFreedom freedom,
                    const Registration& found) {
-  // What a survey by hand leaves; better fits need no other explanation.
+  // A survey by hand leaves residuals of kGood_m; a fit as good as that is accepted as it is.
   constexpr double kGood_m = 0.02, kBetter = 0.2, kWorst = 0.1;
   const auto n = static_cast<double>(pairs.size());
   const auto explains = [&](double rms_m) { return rms_m < kBetter * found.rms_m; };
@@ -194,8 +194,10 @@ std::string misfit(std::span<const PointPair> pairs, RegistrationFreedom freedom
         "the pairs fit a mirrored frame ({}): one of the frames is left-handed, or "
         "two columns are exchanged",
         residuals(found.mirrored_rms_m));
-  for (const RegistrationFreedom free : {freedom, RegistrationFreedom::kFree}) {
-    if (free == RegistrationFreedom::kFree && pairs.size() < 3) break;
+  std::vector<RegistrationFreedom> freedoms{freedom};
+  if (freedom != RegistrationFreedom::kFree && pairs.size() >= 3)
+    freedoms.push_back(RegistrationFreedom::kFree);
+  for (const RegistrationFreedom free : freedoms) {
     const Scaled scaled = fit_scaled(pairs, free);
     if (explains(scaled.rms_m) && std::abs(std::log(scaled.scale)) > 0.02)
       return fmt::format("the pairs fit where a lab's metre is {:.5g} m of the scene ({}): {}",

@@ -25,7 +25,7 @@ class ClientSocket {
   static Result<std::unique_ptr<ClientSocket>> connect(const ClientSocketOptions& options);
   ~ClientSocket();
 
-  // How often a connection that stood was closed by the server or its end. Closed: it is no more.
+  // How often a connection was closed after it stood. closed(): one stood, and none stands now.
   std::uint64_t closures();
   bool closed();
 

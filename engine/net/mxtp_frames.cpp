@@ -65,8 +65,8 @@ const SuitFrame* SuitFrames::take(const MxtpDatagram& datagram, TimeNs arrived_n
   return publish(pending, header.props, counts);
 }
 
-// All segments of the body came, some of which may have been refused: whatever its header says, a
-// smaller body is none.
+// Whether each of the body's segments came, good or refused. A frame with fewer is not used,
+// whatever its header says.
 bool SuitFrames::has_body(const Pending& pending) {
   std::array<bool, kMxtpBodySegments> came{};
   for (const MxtpPose& pose : pending.poses)

@@ -154,7 +154,8 @@ double water_luminance(const shared::Lighting& light) {
   return sum;
 }
 
-// What the metered picture's logarithms have for a mean: a luminance. water: that of the water.
+// The metered luminance: the exponential of the mean logarithm over the picture, of which water
+// fills kWaterShare and ground the rest. water: the luminance of the water.
 double metered_luminance(const shared::Lighting& light, double water, double illuminance_lx) {
   const bool bottom = light.terms & shared::kLightAmbient;
   const bool near = !bottom || light.bottom_depth_m < 0.0f;

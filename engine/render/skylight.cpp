@@ -95,9 +95,8 @@ class Covers {
       return;
     const Vec3 area = 0.5 * glm::abs(glm::cross(b - a, c - a)) / (grid_.cell_m * grid_.cell_m);
     Cover& cover =
-        covers_[(static_cast<std::size_t>(cell.y) * grid_.nz + static_cast<std::size_t>(cell.z)) *
-                    grid_.nx +
-                static_cast<std::size_t>(cell.x)];
+        covers_[grid_.cell_of(static_cast<std::size_t>(cell.x), static_cast<std::size_t>(cell.y),
+                              static_cast<std::size_t>(cell.z))];
     for (std::size_t i = 0; i < 3; ++i) cover[i] += static_cast<float>(area[static_cast<int>(i)]);
   }
 
@@ -209,11 +208,9 @@ double SkylightGrid::at(const Vec3& place_m) const {
     const Vec3 c = base + corner, w = glm::mix(1.0 - part, part, corner);
     const bool inside = c.x >= 0 && c.y >= 0 && c.z >= 0 && c.x < nx && c.y < ny && c.z < nz;
     const double here =
-        inside
-            ? double(
-                  open[(static_cast<std::size_t>(c.y) * nz + static_cast<std::size_t>(c.z)) * nx +
-                       static_cast<std::size_t>(c.x)])
-            : 1.0;
+        inside ? double(open[cell_of(static_cast<std::size_t>(c.x), static_cast<std::size_t>(c.y),
+                                     static_cast<std::size_t>(c.z))])
+               : 1.0;
     sum += w.x * w.y * w.z * here;
   }
   return std::isfinite(sum) ? sum : 1.0;

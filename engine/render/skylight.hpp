@@ -26,6 +26,9 @@ struct SkylightGrid {
   std::uint32_t nx = 0, ny = 0, nz = 0;
   std::vector<float> open;  // 0 to 1, [y][z][x], at the cells' middles
 
+  std::size_t cell_of(std::size_t x, std::size_t y, std::size_t z) const {
+    return (y * nz + z) * nx + x;
+  }
   // Between the eight nearest cells; 1 outside, and over the outermost half cell on the way there.
   double at(const Vec3& place_m) const;
 };

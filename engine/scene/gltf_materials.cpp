@@ -100,17 +100,18 @@ TextureRef parse_texture_ref(Loading& loading, Field field) {
   return out;
 }
 
-// Numbers that glTF lets lie in [0, 1]; others become the nearer end, with a note.
+// A number that glTF lets lie in [0, 1]; another becomes the nearer end, with a note.
+double clamped(Field field, double value) {
+  if (value < 0.0 || value > 1.0)
+    field.note_with("{:g} is outside [0, 1], {} is used", value, value < 0.0 ? 0 : 1);
+  return std::clamp(value, 0.0, 1.0);
+}
 template <std::size_t N>
 std::array<double, N> units(Field field) {
   std::array<double, N> ones;
   ones.fill(1.0);
   auto out = field.numbers<N>(ones);
-  for (double& v : out) {
-    if (v < 0.0 || v > 1.0)
-      field.note_with("{:g} is outside [0, 1], {} is used", v, v < 0.0 ? 0 : 1);
-    v = std::clamp(v, 0.0, 1.0);
-  }
+  for (double& v : out) v = clamped(field, v);
   return out;
 }
 Vec3f color_of(const std::array<double, 3>& rgb) {
@@ -121,10 +122,7 @@ Vec4f base_color_of(Field field) {
   return Vec4f(rgba[0], rgba[1], rgba[2], rgba[3]);
 }
 float unit(Field field, float fallback) {
-  const float value = field.number_f(fallback);
-  if (value < 0.0f || value > 1.0f)
-    field.note_with("{:g} is outside [0, 1], {} is used", value, value < 0.0f ? 0 : 1);
-  return std::clamp(value, 0.0f, 1.0f);
+  return static_cast<float>(clamped(field, field.number_f(fallback)));
 }
 
 AlphaMode parse_alpha_mode(Field field) {

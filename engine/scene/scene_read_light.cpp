@@ -47,6 +47,10 @@ Shafts read_shafts(TableReader& reader) {
   return shafts;
 }
 
+Vec3 cells_along(const Skylight& skylight) {
+  return glm::ceil((skylight.high_m - skylight.low_m) / skylight.cell_m);
+}
+
 Skylight read_skylight(TableReader& reader) {
   Skylight skylight;
   const std::vector<double> box = reader.numbers("box_m", {6}, {-1e5, 1e5});
@@ -59,7 +63,7 @@ Skylight read_skylight(TableReader& reader) {
   skylight.high_m = glm::max(a, b);
   skylight.cell_m = reader.number("cell_m", skylight.cell_m, {0.05, 100, false, false, "metres"});
   skylight.samples = static_cast<std::uint32_t>(reader.whole("samples", skylight.samples, 1, 64));
-  const Vec3 cells = glm::ceil((skylight.high_m - skylight.low_m) / skylight.cell_m);
+  const Vec3 cells = cells_along(skylight);
   if (!(cells.x * cells.y * cells.z >= 1.0) || !(cells.x * cells.y * cells.z <= kMostSkylightCells))
     reader.refuse("box_m", fmt::format("a box of 1 to {:g} cells of cell_m; this one has {:g}",
                                        kMostSkylightCells, cells.x * cells.y * cells.z));
@@ -89,7 +93,7 @@ void read_place_of_sun(TableReader& reader, Sun& sun) {
 }  // namespace
 
 std::array<std::uint32_t, 3> cells_of(const Skylight& skylight) {
-  const Vec3 cells = glm::ceil((skylight.high_m - skylight.low_m) / skylight.cell_m);
+  const Vec3 cells = cells_along(skylight);
   std::array<std::uint32_t, 3> out{};
   for (int i = 0; i < 3; ++i)
     out[static_cast<std::size_t>(i)] = static_cast<std::uint32_t>(std::max(cells[i], 1.0));

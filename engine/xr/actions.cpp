@@ -97,7 +97,7 @@ Status ActionTable::check(const ActionDesc& desc, const std::string& text, const
   return {};
 }
 
-// Of two bindings of one control, unless each has another condition.
+// Refuses two bindings of one control, unless they have different conditions.
 Status ActionTable::check_alone(std::span<const ActionDesc> actions,
                                 const std::vector<Action>& read) {
   struct Use {

@@ -48,7 +48,8 @@ NERITIC_CONST uint kExposureDepth = 1;
 NERITIC_CONST uint kExposureOut = 2;
 NERITIC_CONST uint kExposureData = 3;
 NERITIC_CONST uint kExposureMotion = 4;  // pixels to the next frame
-// Of a tile: its quickest and its slowest motion; shutter_reach makes two texels of it, with four motions.
+// Each tile's quickest and slowest motion; shutter_reach turns them into two texels a tile, with
+// four motions.
 NERITIC_CONST uint kExposureTiles = 5;
 
 NERITIC_SHARED_END

@@ -27,10 +27,10 @@ NERITIC_CONST uint kLightShafts = 1u << 23;
 NERITIC_CONST uint kLightProfiles = 1u << 24;
 // The sun is above the horizon of a scene with the surface: its disc and its glitter.
 NERITIC_CONST uint kLightSunSeen = 1u << 25;
+// Still things keep the light from above away: the skylight image.
+NERITIC_CONST uint kLightSkylight = 1u << 26;
 // Some sheet lets diffuse light through: 1 - the albedo image's alpha.
 NERITIC_CONST uint kLightThin = 1u << 27;
-// What stands still takes away light from above: the skylight image.
-NERITIC_CONST uint kLightSkylight = 1u << 26;
 // Refractive index of sea water against air, in the visible (1.33 to 1.34, Mobley 1994).
 NERITIC_CONST float kWaterIndex = 1.333f;
 // Diffuse sky light through a flat surface (Mobley 1994, sec. 4.2: reflectance 0.066).
@@ -102,8 +102,8 @@ NERITIC_CONST uint kShadeLampShadows = 19;
 NERITIC_CONST uint kShadeScattered = 24;  // with kLightForwardScatter
 NERITIC_CONST uint kShadeWaves = 25;      // with kLightWaves
 NERITIC_CONST uint kShadeShafts = 26;     // with kLightShafts
-NERITIC_CONST uint kShadeSkylight = 28;   // with kLightSkylight
 NERITIC_CONST uint kShadeTiles = 27;      // where a list names the tiles
+NERITIC_CONST uint kShadeSkylight = 28;   // with kLightSkylight
 NERITIC_CONST uint kShadeGroup = 8;
 // Specialisation constants of the shade pass: the terms and the number of lamps. Terms that a scene
 // does not name are not compiled: a CPU driver computes both sides of a branch, and runs the body

@@ -8,8 +8,8 @@ NERITIC_SHARED_BEGIN
 
 // Pixels of the picture to one of the shafts image, a side.
 NERITIC_CONST uint kShaftStep = 4;
-// Of a texel of the shafts image (shaft_texel.glsl): the largest ratio, which the part behind the point counts in,
-// and the whole steps that the distance has.
+// A texel of the shafts image (shaft_texel.glsl) holds a ratio up to kShaftMost, and a distance in
+// kShaftSteps steps.
 NERITIC_CONST float kShaftMost = 8.0;
 NERITIC_CONST float kShaftSteps = 1023.0;
 

@@ -1,4 +1,4 @@
-// Of the shutter's passes: the motion of a pixel, and when a row is exposed. A pass that includes it declares
+// A pixel's motion and a row's time of exposure, for the shutter's passes. A pass that includes it declares
 // motion_image and shutter before. GLSL only.
 #ifndef NERITIC_SHUTTER_GLSL
 #define NERITIC_SHUTTER_GLSL

@@ -24,7 +24,8 @@ NERITIC_CONST uint kSkylightParams = 2;
 NERITIC_CONST uint kSkylightDepth = 3;
 NERITIC_CONST uint kSkylightNormal = 4;
 NERITIC_CONST uint kSkylightGrid = 5;  // floats, [y][z][x]
-NERITIC_CONST uint kSkylightOut = 6;   // rgba8: along the sight, at its end, 1, half visibility_distance
+NERITIC_CONST uint kSkylightOut =
+    6;  // rgba8: along the sight, at its end, 1, half visibility_distance
 // Specialisation constant: the terms of light.
 NERITIC_CONST uint kSpecSkylightTerms = 0;
 

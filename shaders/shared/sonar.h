@@ -66,10 +66,8 @@ struct SonarDrawnLarger {
   // the sonar.
   vec4 direct_rad;
   uint label;
-  uint views;  // kSonarLargerHere, kSonarLargerDirect or both
+  uint direct;  // ghosts: not 0 where it is drawn larger in the sonar's own view
 };
-NERITIC_CONST uint kSonarLargerHere = 1u;    // drawn larger in the view that is gathered
-NERITIC_CONST uint kSonarLargerDirect = 2u;  // ghosts: in the sonar's own view
 
 NERITIC_CONST uint kSonarBindColumns = 0;
 NERITIC_CONST uint kSonarBindRows = 1;

@@ -146,7 +146,7 @@ Sight look_through(float depth_m, vec3 direction, float length_m, float lit, flo
   // Exponents beyond 80 are as good as infinite and keep inf * 0 out.
   sight.transmittance = exp(-min(light.beam_attenuation * murky_m, vec3(80.0)));
   if (!light_has(kLightScattering) || !light_has(kLightSun)) return sight;
-  // What is scattered out of the beam's core comes from all about, as skylight does.
+  // Light scattered out of the beam's core comes from all about, as skylight does.
   if (light_has(kLightSkylight))
     lit = max(lit - (1.0 - core_share(depth_m)) * (1.0 - skylight), 0.0);
   vec3 source =

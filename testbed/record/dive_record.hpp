@@ -54,7 +54,7 @@ std::size_t bytes_of(const DiveRows& rows);
 
 class DiveRecorder {
  public:
-  // stepped_s: the seconds of the run's steps before, which went back.
+  // stepped_s: the seconds that this run stepped before it went to a saved state.
   DiveRecorder(const PhysicsWorld& world, const RecordOptions& options, double stepped_s = 0.0);
 
   // Each step's result in turn, the start first.

@@ -96,14 +96,14 @@ std::vector<shared::SonarDrawnLarger> places_of(const std::vector<render::DrawnL
     shared::SonarDrawnLarger& place = places[target.label];
     place.direct_rad =
         glm::vec4(target.azimuth_rad, target.half_wide_rad, target.low_rad, target.high_rad);
-    place.views |= shared::kSonarLargerDirect;
+    place.true_from_drawn = glm::mat3(1.0f);  // for what is not drawn larger here
+    place.direct = 1;
   }
   for (const render::DrawnLarger& target : here) {
     shared::SonarDrawnLarger& place = places[target.label];
     const Mat4 true_from_drawn = glm::inverse(target.drawn_from_true);
     place.true_from_drawn = glm::mat3(glm::dmat3(true_from_drawn));
     place.offset_m = glm::vec3(true_from_drawn[3]);
-    place.views |= shared::kSonarLargerHere;
   }
   std::vector<shared::SonarDrawnLarger> out;
   for (auto& [label, place] : places) {

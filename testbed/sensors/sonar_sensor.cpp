@@ -219,8 +219,7 @@ Status SonarSensor::declare_head(const FrameParts& frame, const Capture& capture
     NERITIC_TRY(arrays, declare_echoes(frame, capture, sonar, work));
   }
   if (!arrays_wanted) return {};
-  // Readers of the arrays expect a plain pinhole,
-  // and things of their own size.
+  // Readers of the arrays expect a plain pinhole, and things of their own size.
   if (!capture.echoes || state.sampled.lean != 0.0 || !work.sampled.draws.larger.empty()) {
     NERITIC_TRY(arrays, declare_geometry(frame, ping.prefix + "arrays ", kFrontFaces, work.arrays,
                                          parts_of(capture)));

@@ -56,7 +56,7 @@ struct HeadWork {
   Pin<sonar::HeadBuffers> buffers;  // empty: nothing is brought to the host
   sonar::HeadPing ping;
   ViewsWork sampled, arrays;
-  // What a gather of this ping draws larger than it is: strengths with its own, and its places.
+  // Things that a gather of this ping draws larger: all strengths with theirs, and their places.
   struct Larger {
     std::vector<float> strengths;
     std::vector<shared::SonarDrawnLarger> places;

@@ -17,7 +17,7 @@ struct HudPlace {
   PanelRect rect;  // whole pixels; empty: there is no room beside the others
 };
 
-// In the order of kinds: corner, wrist, mask. Each at its layout's place; one that would cover an
+// Placed in turn: console, corner, wrist, mask. Each at its layout's place; one that would cover an
 // earlier one at another edge, or smaller. The console lies under the view's whole width or height
 // and leaves the others no place (fit_one_window).
 std::vector<HudPlace> hud_places(std::span<const hud::LayoutKind> kinds, std::uint32_t width,

@@ -218,7 +218,7 @@ const std::map<std::string, Offsets>& shared_structs() {
       {"SonarDrawnLarger",
        {MEMBER(SonarDrawnLarger, true_from_drawn), MEMBER(SonarDrawnLarger, offset_m),
         MEMBER(SonarDrawnLarger, direct_rad), MEMBER(SonarDrawnLarger, label),
-        MEMBER(SonarDrawnLarger, views)}},
+        MEMBER(SonarDrawnLarger, direct)}},
       {"SonarRecord",
        {MEMBER(SonarRecord, bin), MEMBER(SonarRecord, counts), MEMBER(SonarRecord, label),
         MEMBER(SonarRecord, ends)}},

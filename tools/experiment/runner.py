@@ -221,17 +221,16 @@ class _Worker:
         if self.ended:
             return
         self.ended = True
-        if self.process.is_alive():
-            if self.run is None:
-                self.pipe.send(None)
-            else:
-                self.process.terminate()
-            try:
+        try:
+            if self.process.is_alive():
+                if self.run is None:
+                    self.pipe.send(None)
+                else:
+                    self.process.terminate()
                 self.process.join(self.grace_s)
-            finally:  # also where a second Ctrl-C ends the wait
-                self.process.kill()
-                self._kill_group()
-        self._kill_group()
+        finally:  # also where a second Ctrl-C ends the wait
+            self.process.kill()
+            self._kill_group()
         self.process.join()
         self.pipe.close()
 

@@ -31,8 +31,9 @@ struct MissionOutcome {
   // Done as it believes and in truth.
   bool done() const { return believes_done && truly_arrived() == misses_m.size(); }
 };
-// A vehicle that flies on what it measures is truly at a waypoint where it is off by no more than
-// the waypoint's radius and this margin: five sigmas of a surveyed launch (rov/navigation.hpp).
+// A vehicle that flies on what it measures counts as truly at a waypoint if its distance from it is
+// at most the waypoint's radius plus this margin: five sigmas of a surveyed launch
+// (rov/navigation.hpp).
 inline constexpr double kMissMargin_m = 0.5;
 
 // Whether a vehicle has a mission that ends.

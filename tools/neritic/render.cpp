@@ -119,8 +119,8 @@ Status check_camera_data(const scene::Scene& scene, const LoopSensors& sensors,
   return {};
 }
 
-// What a side-scan's image-based record needs of its camera, as far as it is known before the first
-// frame.
+// Refuses a camera that a side-scan's image-based record cannot use, as far as that is known before
+// the first frame.
 Status check_picture_cameras(const scene::Scene& scene, const LoopSensors& sensors,
                              const scene::SimulatedMotion* simulated, double time_s) {
   const scene::MotionSource motion(scene, simulated);

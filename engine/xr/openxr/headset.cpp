@@ -284,6 +284,7 @@ Result<ShownPicture> OpenXrHeadset::declare(graph::FrameGraph& graph, const Pose
                                             std::span<const Layer> layers) {
   NERITIC_CHECK(in_frame_, "layers without a frame");
   ShownPicture shown;
+  (void)runtime_->take_failure();  // of calls that nobody missed
   const Status status = declare_layers(graph, layers, shown);
   if (!status.ok() && !runtime_->failed() && runtime_->loss() == Loss::kNone) return status.error();
   // end_frame drops what was lost, and counts what may pass.

@@ -168,7 +168,7 @@ Status Inputs::sync(DeviceState& state) {
   const XrResult synced = runtime_.xr().SyncActions(session_.handle(), &info);
   NERITIC_TRY_STATUS(runtime_.check(synced, "xrSyncActions"));
   if (synced == XR_SESSION_NOT_FOCUSED) {
-    // What is held meanwhile is meant for another program.
+    // The wearer may hold a control for another program: it counts as held until it is let go.
     for (ControlAction& one : controls_) one.held = true;
     return {};
   }

@@ -8,7 +8,7 @@
 namespace neritic::xr::openxr {
 namespace {
 
-// Of a standing adult of 1.7 m.
+// Height of the eyes of a standing adult of 1.7 m over the floor.
 constexpr double kEyes_m = 1.6;
 
 }  // namespace

@@ -124,7 +124,9 @@ TEST(CsvLog, AFullDiskKeepsTheRowsThatFit) {
     EXPECT_LE(part.size(), most);
     EXPECT_TRUE(part.empty() || part.back() == '\n') << most;
     // The longest row is a vehicle's.
-    if (most > head) EXPECT_GT(part.size() + step.size() - head, most);
+    if (most > head) {
+      EXPECT_GT(part.size() + step.size() - head, most);
+    }
     EXPECT_FALSE(fs::exists(folder / name));
   }
   std::signal(SIGXFSZ, handler);

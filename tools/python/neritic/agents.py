@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 MOST_TANKS = 4
-"""Of a diver (diver/gear.hpp)."""
+"""A diver's tanks, at most (diver/gear.hpp)."""
 
 
 def _choice(name: str, what: str, choice: str, words: Sequence[str]) -> int:

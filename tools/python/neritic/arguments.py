@@ -50,7 +50,7 @@ def number(where: str, value: Any, least: float = -math.inf, most: float = math.
 
 
 def rotations(where: str, values: ArrayLike, count: int) -> NDArray[np.float64]:
-    """Quaternions x y z w in one row. Of any length but those that no rotation follows from."""
+    """Quaternions x y z w in one row. Any length is accepted from which a rotation follows."""
     row = numbers(where, values, 4 * count)
     with np.errstate(over="ignore", invalid="ignore"):
         length = np.sqrt(np.square(row.reshape(count, 4)).sum(axis=1))

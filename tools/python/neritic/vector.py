@@ -191,7 +191,7 @@ def vector(task: str, num_envs: int = 1, *, vehicle: Union[None, str, os.PathLik
 
 
 def _random(randomise: Any) -> Optional[dict[str, float]]:
-    """Of True, False or a dict; None: nothing differs."""
+    """What may differ, as True, False or a dict says; None: nothing does."""
     if isinstance(randomise, Mapping):
         for name in randomise:
             if name not in RANDOMISED:

@@ -19,7 +19,7 @@ from .errors import BadInput, Error
 from .observations import MODEM_EVENTS, Image, Message, Observations, Reading, Stream, Truth, offsets_of
 
 MOST_STEPS = 100_000_000
-"""Of one tick."""
+"""Steps of one tick, at most."""
 
 
 class World:
