@@ -83,7 +83,7 @@ def berth():
     tri = np.concatenate([np.stack([a, b, a + 1], 1), np.stack([b, b + 1, a + 1], 1)])
     up = np.cross(pos[tri[:, 1]] - pos[tri[:, 0]], pos[tri[:, 2]] - pos[tri[:, 0]])[:, 1]
     tri = np.where((up > 0)[:, None], tri, tri[:, ::-1])
-    part = shade(Part(pos, tri, pos[:, [0, 2]] / seabed.TILE), 80)
+    part = shade(Part(pos, tri, seabed.texture_place(pos[:, 0], pos[:, 2])), 80)
     part.col = seabed.tint(part.pos, part.pos[:, 1])
     return part
 

@@ -15,7 +15,7 @@ from glb import Glb, qmul, quat
 from mesh import Part
 
 OUT = Path(__file__).resolve().parents[2] / "assets" / "models"
-SIZE, CELLS, TILE = 80.0, 184, 2.5
+SIZE, CELLS, TILE, BEND = 80.0, 184, 2.5, 1.5  # metres, but for CELLS
 
 
 def wave(phase, sharp=0.35):
@@ -58,6 +58,13 @@ def tint(pos, y):
     return np.column_stack([np.clip(col, 0, 1), np.ones(len(col))])
 
 
+def texture_place(x, z):
+    """Texture coordinates at x, z (m). Slow bends keep the tiles from lying in rows and turn their ripples."""
+    p = np.column_stack([x, 0 * x, z])
+    bend = np.column_stack([N.fbm3(p, 31, 1 / 13, 2), N.fbm3(p, 32, 1 / 13, 2)])
+    return (p[:, [0, 2]] + BEND * bend) / TILE
+
+
 def bed():
     t = np.linspace(-SIZE / 2, SIZE / 2, CELLS + 1)
     z, x = np.meshgrid(t, t, indexing="ij")
@@ -78,7 +85,7 @@ def bed():
     hz = (height(x, z + e) - height(x, z - e)) / (2 * e)
     n = np.column_stack([-hx, np.ones(len(hx)), -hz])
     n /= np.linalg.norm(n, axis=1, keepdims=True)
-    part = Part(pos, tri, pos[:, [0, 2]] / TILE, n)
+    part = Part(pos, tri, texture_place(pos[:, 0], pos[:, 2]), n)
     part.col = tint(pos, y)
     return part
 
@@ -113,33 +120,33 @@ def tracks(n, count, seed):
 
 
 def sand(n=1024):
-    zf = ripples(n, 15, 5, 0.30, 0.42)  # they fork, turn and change their spacing
+    zf = ripples(n, 15, 5, 0.26, 0.30)  # they fork, turn and change their spacing
     amp = np.abs(zf) / np.abs(zf).mean()
     ph = np.angle(zf)
     crest = np.cos(ph + 0.45 * np.sin(ph))
     crest = np.where(crest > 0, np.maximum(crest, 0) ** 1.25, crest * 0.8)
     crest = N.blur(crest, 2.0) * N.smooth(0.15, 1.1, amp)
-    crest = crest * (0.10 + 0.75 * N.smooth(-0.9, 0.9, N.spectral(n, 9, 3.0, 1, 5)))  # and die out in patches
+    crest = crest * (0.45 + 0.55 * N.smooth(-0.9, 0.9, N.spectral(n, 9, 3.0, 1, 5)))  # and die out in patches
     small = np.cos(np.angle(ripples(n, 43, 8, 0.25, 0.5)))
     soft, mid, f = N.spectral(n, 2, 2.2, 1.5, 30), N.spectral(n, 3, 1.0, 20, 200), N.spectral(n, 4, 0.0, 150)
     lumps = N.spectral(n, 7, 1.6, 5, 60)
-    col = N.mix(N.flat(n, (0.56, 0.49, 0.39)), (0.76, 0.70, 0.59), N.smooth(-1.1, 1.1, 0.8 * crest + 0.30 * mid + 0.35 * soft))
-    col *= (1 + 0.05 * soft + 0.05 * lumps + 0.05 * mid + 0.075 * f)[..., None]
-    litter = N.smooth(0.5, 2.0, -crest + 0.8 * N.spectral(n, 10, 2.2, 2, 40) + 0.35 * f)  # dark, in the troughs
-    col = N.mix(col, (0.27, 0.23, 0.16), 0.62 * litter)
+    col = N.mix(N.flat(n, (0.56, 0.49, 0.39)), (0.76, 0.70, 0.59), N.smooth(-1.1, 1.1, 0.9 * crest + 0.30 * mid + 0.10 * soft))
+    col *= (1 + 0.02 * soft + 0.04 * lumps + 0.05 * mid + 0.075 * f)[..., None]
+    litter = N.smooth(0.7, 2.2, -1.3 * crest + 0.5 * N.spectral(n, 10, 1.6, 6, 60) + 0.35 * f)  # dark, in the troughs
+    col = N.mix(col, (0.27, 0.23, 0.16), 0.5 * litter)
     col = N.mix(col, (0.93, 0.90, 0.84), 0.7 * N.smooth(2.1, 3.0, f))
     col = N.mix(col, (0.20, 0.17, 0.14), 0.7 * N.smooth(2.0, 2.9, -f + 0.3 * (crest < -0.2)))
     drift = N.smooth(-0.4, 1.6, N.spectral(n, 11, 2.4, 1, 12) - 0.5 * crest)
     shell, shell_dome, tone = N.bumps(n, TILE, 1300, 12, 0.004, 0.016, drift)
-    stone, stone_dome, grey = N.bumps(n, TILE, 700, 13, 0.006, 0.045, drift)
+    stone, stone_dome, grey = N.bumps(n, TILE, 700, 13, 0.006, 0.030, drift)
     cast, cast_dome, _ = N.bumps(n, TILE, 46, 14, 0.03, 0.07)
     furrow = tracks(n, 7, 15)
     col *= (1 + 0.10 * furrow)[..., None]
     col = N.mix(col, N.mix(N.flat(n, (0.90, 0.87, 0.80)), (0.58, 0.50, 0.42), tone), 0.85 * shell)
     shade_of = lambda cover, px: np.clip(N.blur(cover, px) - cover, 0, 1)  # sand beside a stone sees less of the sky
-    col *= (1 - 0.75 * shade_of(stone, 3.0) - 0.5 * shade_of(shell, 1.5))[..., None]
+    col *= (1 - 0.5 * shade_of(stone, 3.0) - 0.5 * shade_of(shell, 1.5))[..., None]
     col = N.mix(col, N.mix(N.flat(n, (0.27, 0.25, 0.22)), (0.66, 0.61, 0.54), grey**1.5) * (1 + 0.12 * f + 0.10 * mid)[..., None], 0.92 * stone)
-    h = 0.0070 * crest + 0.0008 * small + 0.006 * soft + 0.0016 * lumps + 0.0010 * mid + 0.00035 * f
+    h = 0.0085 * crest + 0.0008 * small + 0.003 * soft + 0.0016 * lumps + 0.0010 * mid + 0.00035 * f
     h += N.blur(cast_dome, 2.0) * 0.45 * (1 + 0.3 * mid * cast) + 0.006 * furrow + stone_dome + 0.8 * shell_dome
     rough = np.clip(0.90 + 0.04 * mid - 0.15 * shell, 0, 1)
     return np.clip(col, 0, 1), N.rough_metal(rough), N.normal_map(h, TILE)
