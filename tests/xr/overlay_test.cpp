@@ -48,6 +48,21 @@ TEST_F(OverlayTest, RectangleCoversItsPixelsAndNoOther) {
     EXPECT_EQ(texel(x, y), (Texel{0, 0, 0, 255})) << x << ", " << y;
 }
 
+// As when all panels are hidden, or an error ended a frame.
+TEST_F(OverlayTest, FramesThatNobodyDeclaresAreDropped) {
+  NERITIC_ASSERT_OK(const auto overlay, Overlay::create(device(), nullptr, 1.0f));
+  for (const std::uint32_t height : {kHeight, kHeight, 2160u, kHeight}) {
+    NERITIC_ASSERT_STATUS(overlay->fit(height));
+    overlay->begin(kWidth, kHeight, 0.01);
+    ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0, 0), ImVec2(kWidth, kHeight),
+                                                  IM_COL32(200, 0, 0, 255));
+  }
+  graph::FrameGraph graph;
+  overlay->begin(kWidth, kHeight, 0.01);
+  draw(*overlay, graph);
+  EXPECT_EQ(texel(10, 20), (Texel{0, 0, 0, 255}));
+}
+
 TEST_F(OverlayTest, HalfTransparentInkMixesEvenlyWithWhatIsUnder) {
   NERITIC_ASSERT_OK(const auto overlay, Overlay::create(device(), nullptr, 1.0f));
   graph::FrameGraph graph;

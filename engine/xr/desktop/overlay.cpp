@@ -159,6 +159,7 @@ Status Overlay::fit(std::uint32_t height) {
   const float wanted = std::round(static_cast<float>(height) / kHeightOfScale1_px);
   const float scale = std::max(least_scale_, wanted);
   if (scale == scale_) return {};
+  drop_frame();         // it locks the font
   device_.wait_idle();  // frames in flight read the font
   scale_ = scale;
   ImGui::GetStyle() = ImGuiStyle();
@@ -227,6 +228,7 @@ Status Overlay::create_pipelines() {
 }
 
 void Overlay::begin(std::uint32_t width, std::uint32_t height, double elapsed_s) {
+  drop_frame();
   textures_.clear();
   width_ = width;
   height_ = height;
@@ -237,6 +239,11 @@ void Overlay::begin(std::uint32_t width, std::uint32_t height, double elapsed_s)
   io.DisplayFramebufferScale = ImVec2(1.0f, 1.0f);
   io.DeltaTime = std::max(1e-4f, static_cast<float>(elapsed_s));
   ImGui::NewFrame();
+  begun_ = true;
+}
+
+void Overlay::drop_frame() {
+  if (std::exchange(begun_, false)) ImGui::EndFrame();
 }
 
 ImTextureID Overlay::texture(graph::ImageHandle image, std::uint32_t layer) {
@@ -246,6 +253,7 @@ ImTextureID Overlay::texture(graph::ImageHandle image, std::uint32_t layer) {
 
 graph::ImageHandle Overlay::declare(graph::FrameGraph& graph) {
   ImGui::Render();
+  begun_ = false;
   drawn_ = drawn_parts(*ImGui::GetDrawData());
   struct Data {
     graph::ImageHandle target;

@@ -25,7 +25,8 @@ class Overlay {
   // Scales text and panels for pictures of that height: twice as large on 2160 pixels as on 1080.
   // Waits for the GPU when the scale changes.
   Status fit(std::uint32_t height);
-  // Starts a frame of that many pixels; ImGui calls may follow.
+  // Starts a frame of that many pixels; ImGui calls may follow. The frame before, if it was not
+  // declared, is dropped.
   void begin(std::uint32_t width, std::uint32_t height, double elapsed_s);
   // An image of this frame's graph for ImGui to draw with (sRGB-encoded values, a 2D array as all
   // of the graph's images). Valid until declare's pass has run.
@@ -48,6 +49,7 @@ class Overlay {
   explicit Overlay(gpu::Device& device) : device_(device) {}
   Status create_font();
   Status create_pipelines();
+  void drop_frame();
   void record(graph::PassContext& context, graph::ImageHandle target) const;
   void draw(graph::PassContext& context, const ImDrawData& data) const;
   VkImageView bind_texture(graph::PassContext& context, ImTextureID id, std::uint32_t& layer) const;
@@ -55,6 +57,7 @@ class Overlay {
   gpu::Device& device_;
   ImGuiContext* context_ = nullptr;
   bool glfw_ = false;
+  bool begun_ = false;  // a frame, not declared yet
   float least_scale_ = 1.0f, scale_ = 1.0f;
   std::uint32_t width_ = 1, height_ = 1;  // of this frame
   gpu::Image font_;

@@ -84,6 +84,22 @@ TEST_F(WindowKeys, F9GoesBackToTheStateOfF5ToTheLastBit) {
   EXPECT_EQ(test::text_of(scratch_ / "back.state"), first);
 }
 
+// A later dive comes up with its panels hidden, as the one before was left.
+TEST_F(WindowKeys, PanelsAreHiddenAndShownAgainAndAWindowWithoutThemGoesOn) {
+  const std::vector<std::string> shots = {"key F12", "file neritic_0001.png", "wait 0.5", "key F12",
+                                          "file neritic_0002.png"};
+  std::vector<std::string> hidden = {"wait 0.3", "key F2", "wait 7"};  // past the key's note
+  hidden.insert(hidden.end(), shots.begin(), shots.end());
+  hidden.push_back("key Escape");
+  const test::WindowRun run = drive("", hidden);
+  if (test::may_skip_without_device()) GTEST_SKIP() << run.err;
+  EXPECT_EQ(run.status, 0) << run.err;
+  const test::WindowRun again =
+      drive("", {"wait 1", "key F12", "file neritic_0003.png", "key F2", "wait 0.5", "key F12",
+                 "file neritic_0004.png", "key Escape"});
+  EXPECT_EQ(again.status, 0) << again.err;
+}
+
 // A vehicle is taken over while it is recorded: what the keys did is in the recording.
 TEST_F(WindowKeys, ARecordingBegunInMidRunReplaysFromTheStateInIt) {
   const test::WindowRun run =
