@@ -91,13 +91,15 @@ Status Screenshots::finish() {
 
 Status Screenshots::write() {
   NERITIC_TRY_STATUS(frames_.wait(shot_->done));
-  NERITIC_TRY_STATUS(scene::write_png8(
+  const Status written = scene::write_png8(
       shot_->path,
       cut(rgb_of(shot_->texels->mapped<std::uint8_t>(), shot_->width, shot_->height, shot_->bgra),
-          shot_->part)));
-  note_ = "wrote " + shot_->path.string();
+          shot_->part));
+  const bool by_key = shot_->by_key;
+  note_ =
+      written.ok() ? "wrote " + shot_->path.string() : "no screenshot: " + written.error().message;
   shot_.reset();
-  return {};
+  return by_key ? Status() : written;
 }
 
 }  // namespace neritic::testbed

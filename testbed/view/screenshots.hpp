@@ -26,7 +26,7 @@ class Screenshots {
   // frame's is wanted and the display's images cannot be read.
   Status declare(graph::FrameGraph& graph, const xr::ShownPicture& shown, bool last);
   void submitted(std::uint64_t value);
-  // Writes a picture by key that is done.
+  // Writes a picture by key that is done; where that fails, only the note says so.
   Status write_done(std::uint64_t completed);
   // After the last frame: writes what is still to be written.
   Status finish();
