@@ -13,6 +13,14 @@ constexpr double kHighestSample_m = -10.0, kDeepestSample_m = 2000.0;
 constexpr double kSubmerged_m = 0.5;
 // A longer time at the surface ends a dive.
 constexpr double kNewDive_min = 10.0;
+// Who holds a stop's depth by hand is at it within this.
+constexpr double kArrived_m = 0.5;
+
+// The stop at this depth or the next below it.
+double stop_at(const DecoConventions& conventions, double depth_m) {
+  const double step_m = conventions.stop_step_m;
+  return std::max(std::ceil(depth_m / step_m - 1e-9) * step_m, conventions.last_stop_m);
+}
 
 // The next stop and the sum of all times.
 class NextStop : public AscentSink {
@@ -119,7 +127,6 @@ DiveComputerState DiveComputer::step(const DiveComputerState& before, const Dive
 // Stops begin where the planner's would, within a hand that holds its depth. The anchor is kept
 // while there is a ceiling, and the diver does not go far below again.
 void DiveComputer::move_anchor(DiveComputerState& state) const {
-  constexpr double kArrived_m = 0.5;
   const DecoConventions& c = settings_.conventions;
   const auto depth_of = [&](double gf) {
     return c.environment.depth_m(ceiling(ascent_.model, state.tissues, gf).pressure_bar);
@@ -129,8 +136,7 @@ void DiveComputer::move_anchor(DiveComputerState& state) const {
     state.anchor_m = 0.0;
     return;
   }
-  const double stop =
-      std::max(std::ceil(low_m / c.stop_step_m - 1e-9) * c.stop_step_m, c.last_stop_m);
+  const double stop = stop_at(c, low_m);
   if (depth_m > std::max(stop, state.anchor_m) + 1.5 * c.stop_step_m) {
     state.anchor_m = 0.0;
   } else if (state.anchor_m > 0.0) {
@@ -181,15 +187,33 @@ std::size_t DiveComputer::gas_for_stop(std::size_t breathed, double depth_m,
   return best;
 }
 
+// The stop that the ceiling asks for; 0: none. A little above their stop divers are not sent down
+// to the next; those who have yet to rise to it are held below, as by the stop they are at.
+double DiveComputer::owed_stop_m(const DiveComputerState& state,
+                                 const DiveComputerView& view) const {
+  const DecoConventions& c = settings_.conventions;
+  if (view.ceiling_m <= 0.0) return 0.0;
+  const double exact = stop_at(c, view.ceiling_m);
+  if (view.ceiling_violated) return exact;
+  const double eased_m = view.ceiling_m - kCeilingSlack_m;
+  const double eased = eased_m > 0.0 ? stop_at(c, eased_m) : 0.0;
+  return state.last.depth_m > std::max(eased, c.last_stop_m) + 0.5 * c.stop_step_m ? exact : eased;
+}
+
 AscentState DiveComputer::ascent_start(const DiveComputerState& state, const DiveComputerView& view,
                                        std::uint64_t without) const {
   const DecoConventions& c = settings_.conventions;
   AscentState up{state.tissues, state.dive_min, state.last.depth_m, state.last.gas, state.anchor_m};
-  const double owed_m = view.ceiling_violated ? view.ceiling_m : view.ceiling_m - kCeilingSlack_m;
-  if (owed_m <= 0.0) return up;
-  const double stop =
-      std::max(std::ceil(owed_m / c.stop_step_m - 1e-9) * c.stop_step_m, c.last_stop_m);
-  if (stop <= up.depth_m) return up;
+  const double stop = owed_stop_m(state, view);
+  if (stop <= up.depth_m) {
+    // Between stops a plan has yet to arrive at the next, and owes it a whole quantum.
+    const double above = std::floor(up.depth_m / c.stop_step_m) * c.stop_step_m;
+    if (state.anchor_m > 0.0 && above >= c.last_stop_m && up.depth_m - above <= kArrived_m) {
+      up.run_min += (up.depth_m - above) / c.ascent_m_min;
+      up.depth_m = above;
+    }
+    return up;
+  }
   up.gas = gas_for_stop(up.gas, stop, without);
   const double way_min = (stop - up.depth_m) / c.descent_m_min;
   up.run_min += way_min;
@@ -226,7 +250,7 @@ DiveComputerView DiveComputer::view(const DiveComputerState& state, std::uint64_
   view.to_surface_min = clears ? next.minutes : std::numeric_limits<double>::infinity();
   view.to_surface_bar_min = next.bar_min;
   if (next.found) {
-    view.stop_m = next.depth_m;
+    view.stop_m = stop_at(c, next.depth_m);
     view.stop_min = next.stop_min;
   }
   return view;

@@ -110,6 +110,7 @@ class DiveComputer {
   double ceiling_m(const DiveComputerState& state) const;
   // Where the ascent that is shown begins: where the diver is, or at the stop below a ceiling that
   // the diver is above, after the way down to it.
+  double owed_stop_m(const DiveComputerState& state, const DiveComputerView& view) const;
   AscentState ascent_start(const DiveComputerState& state, const DiveComputerView& view,
                            std::uint64_t without) const;
   std::size_t gas_for_stop(std::size_t breathed, double depth_m, std::uint64_t without) const;

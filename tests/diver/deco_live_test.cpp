@@ -239,6 +239,48 @@ TEST(DecoLive, ALittleAboveAStopTheStopStaysWhereItIs) {
   EXPECT_NEAR(above.to_surface_min, at_stop.to_surface_min, 0.5);
 }
 
+// Hands hold a stop within some decimetres. The stop that is shown lies where stops are, and each
+// is done with once: it never goes back to the one below.
+TEST(DecoLive, AWaveringDiverIsToldEachStopOnce) {
+  for (const char* set : {"stop-minutes", "run-minutes", "msw"}) {
+    for (const double period_s : {5.0, 17.0, 61.0}) {
+      const DivePlanRequest request = square_dive(40.0, 20.0, kAir, set);
+      const DiveComputer computer = computer_for(request);
+      const DecoConventions& c = request.conventions;
+      const int stops = static_cast<int>(plan_dive(request).value().stops.size());
+      DiveComputerState state = computer.start();
+      double held_m = 40.0, told_m = 0.0, time_s = 0.0;
+      int told = 0;
+      const auto breathe_at = [&](double depth_m) {
+        state = computer.step(state, {depth_m, 0}, 1.0);
+        time_s += 1.0;
+      };
+      for (int i = 0; i < 20 * 60; ++i) breathe_at(held_m);
+      while (time_s < 3 * 3600.0) {
+        const double depth_m =
+            held_m + (held_m < 40.0 ? 0.35 * std::sin(2.0 * kPi * time_s / period_s) : 0.0);
+        breathe_at(depth_m);
+        const DiveComputerView view = computer.view(state);
+        if (view.ceiling_m <= 0.0 && held_m < 40.0) break;
+        // Rises as fast as computers let, to what is shown.
+        const bool rising = held_m > view.stop_m;
+        held_m = std::max(view.stop_m, held_m - 9.0 / 60.0);
+        if (rising || state.anchor_m <= 0.0) continue;
+        EXPECT_NEAR(std::remainder(view.stop_m, c.stop_step_m), 0.0, 1e-9) << set << " " << time_s;
+        EXPECT_GT(view.stop_min, 0.0) << set << " " << time_s;
+        if (told > 0) {
+          EXPECT_LE(view.stop_m, told_m) << set << " " << period_s << " " << time_s;
+        }
+        told += told == 0 || view.stop_m != told_m;
+        told_m = view.stop_m;
+      }
+      EXPECT_EQ(told_m, c.last_stop_m) << set << " " << period_s;
+      EXPECT_GE(told, 3) << set << " " << period_s;
+      EXPECT_LE(told, stops + 1) << set << " " << period_s;
+    }
+  }
+}
+
 // Nothing comes to breathe for ten minutes at 40 m, then gas again: as if these were not.
 TEST(DecoLive, WithoutGasTissuesAndOxygenStayAsTheyAre) {
   const DiveComputer computer = computer_for(square_dive(40.0, 20.0));
