@@ -32,6 +32,14 @@ NERITIC_INLINE float bubble_aspect(float radius_m) {
   return max(1.0f / (1.0f + 0.163f * pow(eotvos + 1e-6f, 0.757f)), 0.42f);
 }
 
+// How much of a spherical cap a bubble is: round on top, flat or dented below. Between Eotvos
+// numbers of 10 and 40 ellipsoids go over to caps (Clift, Grace and Weber 1978, fig. 2.5).
+NERITIC_INLINE float bubble_cap(float radius_m) {
+  float eotvos = 9.81f * 1026.0f * 4.0f * radius_m * radius_m / 0.0735f;
+  float share = min(max((eotvos - 10.0f) / 30.0f, 0.0f), 1.0f);
+  return share * share * (3.0f - 2.0f * share);
+}
+
 // Fresnel's reflectance from water into gas, unpolarised; sine: of the angle of incidence. 1 from 1
 // / 1.333 on: total reflection.
 NERITIC_INLINE float bubble_reflectance(float sine) {

@@ -88,15 +88,41 @@ vec3 around_bubble(vec3 direction, float spread, float lit) {
   return sum + lamp_light.rgb * exp(-2.0 * (1.0 - dot(direction, to_lamp)) / lamp) / (kPi * lamp);
 }
 
-// A sphere of gas, flattened: premultiplied light and opacity at a place (pixels) on it.
+// A random number in [0, 1) of a bubble's look.
+float look(uint index) {
+  uint h = ((kind.y >> 8) * 16u + index) * 2654435769u;
+  h ^= h >> 15;
+  h *= 2246822519u;
+  return float(h >> 8) * (1.0 / 16777216.0);
+}
+
+// A bubble of gas: premultiplied light and opacity at a place (pixels) on it. Small ones are flattened
+// spheres; wide ones are caps, flat below, and their surface crinkles as they wobble.
 vec4 bubble(vec2 from, float lit) {
   vec2 screen =
       vec2(flatness.z * from.x - flatness.w * from.y, flatness.w * from.x + flatness.z * from.y);
   vec2 spot =
       vec2(dot(screen, vec2(-upright.y, upright.x)), dot(screen, upright.xy) / upright.z) / shape.y;
+  // Seen level a cap's lower half is flatter than its upper one, most in the middle.
+  float loose = smoothstep(0.002, 0.006, flatness.y);
+  float cap = bubble_cap(flatness.y) * (1.0 - along_sight.y * along_sight.y);
+  float below = mix(1.0, 0.22 + 0.3 * look(1u) + 0.2 * spot.x * spot.x, cap);
+  float stretch = 0.5 * (1.0 + below);
+  spot.y = spot.y * stretch + 0.5 * (1.0 - below);
+  if (spot.y < 0.0) {
+    spot.y /= below;
+    stretch /= below;
+  }
+  // The outline's waves of two to five a girth, which swing.
+  float swing = float(kind.y & 255u) * kWobbleTurn_rad, round_angle = atan(spot.y, spot.x);
+  float waves = 0.40 * sin(2.0 * round_angle + 6.28 * look(2u) + 0.8 * sin(swing)) +
+                0.35 * sin(3.0 * round_angle + 6.28 * look(3u) + 0.9 * cos(swing)) +
+                0.25 * sin(5.0 * round_angle + 6.28 * look(4u) - swing);
+  spot /= 1.0 - loose * (0.05 + 0.06 * cap) * (1.0 + waves);
   float r = length(spot);
   // About a pixel and a half from full to none, across the outline.
-  float slope = r > 1e-4 ? length(vec2(spot.x, spot.y / upright.z)) / (r * shape.y) : 1.0 / shape.y;
+  float slope =
+      r > 1e-4 ? length(vec2(spot.x, spot.y * stretch / upright.z)) / (r * shape.y) : 1.0 / shape.y;
   float cover = clamp(0.5 + (1.0 - r) / (1.5 * slope), 0.0, 1.0);
   if (r > 0.998) spot *= 0.998 / r;
   float facing = sqrt(max(1.0 - dot(spot, spot), 0.0));
@@ -104,13 +130,23 @@ vec4 bubble(vec2 from, float lit) {
   vec3 up = abs(along_sight.y) < 0.999 ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0);
   vec3 right = normalize(cross(along_sight, up));
   up = cross(right, along_sight);
-  vec3 normal = normalize(right * spot.x + up * (spot.y / upright.z) - along_sight * facing);
+  vec2 tilted = vec2(spot.x, spot.y * stretch / upright.z);
+  // Ripples of a wide one's surface, finer ones where the picture has room for them.
+  if (loose > 0.0 && shape.y > 2.0) {
+    vec2 at = spot * 2.1 + vec2(cos(swing), sin(swing)) * 0.25 + 50.0;
+    vec2 ripple = vec2(noise(at, kind.y >> 8), noise(at, (kind.y >> 8) + 77u)) - 0.5;
+    at = spot * 5.3 + 90.0;
+    ripple += 0.6 * smoothstep(2.0, 8.0, shape.y) *
+              (vec2(noise(at, kind.y >> 8), noise(at, (kind.y >> 8) + 77u)) - 0.5);
+    tilted += ripple * (loose * (0.45 + 0.35 * cap));
+  }
+  vec3 normal = normalize(right * tilted.x + up * tilted.y - along_sight * max(facing, 0.04));
   float cosine = clamp(-dot(along_sight, normal), 0.0, 1.0), sine = sqrt(1.0 - cosine * cosine);
   // Off a face a pixel joins directions that differ by twice its width.
   float width = 1.2 / max(shape.y, 0.8), spread = width * width;
   float mirrored = bubble_reflectance(sine);
   // Near the middle the light goes nearly straight on: there the picture behind shows through.
-  float bent = smoothstep(0.1, 0.5, r);
+  float bent = smoothstep(0.1, 0.5, sine);
   vec3 color = mirrored * around_bubble(bubble_mirrored(along_sight, normal), spread, lit);
   if (mirrored < 1.0)
     color += (1.0 - mirrored) * bent * around_bubble(bubble_passed(along_sight, normal), spread, lit);

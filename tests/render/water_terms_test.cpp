@@ -294,6 +294,56 @@ TEST(Bubbles, GrowRiseAndEndAtTheSurfaceTheSameEachTime) {
   EXPECT_GT(followed, 50);
 }
 
+TEST(Bubbles, CarryTheGasThatTheSourceNamesAsTheyBreakUp) {
+  scene::Scene scene;
+  scene.objects.resize(1);
+  // So deep that they hardly grow.
+  scene.objects[0].mount.pose.position_m = Vec3(0.0, -2e5, 0.0);
+  const scene::MotionSource motion(scene);
+  scene::BubbleSource source;
+  source.object = 0;
+  source.median_radius_m = 1.6e-3;
+  source.flow_m3_s = 1e-4;
+  source.height_m = 12.0;
+  // What passes a height a second, as a mean over all heights.
+  double flow_m3_s = 0.0, wide = 0.0;
+  double low_m3 = 0.0, high_m3 = 0.0, low_m4 = 0.0, high_m4 = 0.0;
+  constexpr int kRuns = 60;
+  std::vector<double> diameters;
+  for (int run = 0; run < kRuns; ++run) {
+    std::vector<WorldParticle> bubbles;
+    add_bubbles(motion, source, 0, std::uint64_t(100 + run), 200.0 + 7.7 * run, bubbles);
+    for (const WorldParticle& b : bubbles) {
+      flow_m3_s += 4.0 / 3.0 * kPi * b.radius_m * b.radius_m * b.radius_m * b.velocity_m_s.y /
+                   source.height_m / kRuns;
+      diameters.push_back(2.0 * b.radius_m);
+      if (b.radius_m > 0.01) wide += 1.0;
+      const double rise_m = b.position_m.y + 2e5, volume_m3 = std::pow(b.radius_m, 3);
+      if (rise_m < 0.3) {
+        low_m3 += volume_m3;
+        low_m4 += volume_m3 * b.radius_m;
+      } else if (rise_m > 3.0) {
+        high_m3 += volume_m3;
+        high_m4 += volume_m3 * b.radius_m;
+      }
+    }
+  }
+  EXPECT_NEAR(flow_m3_s, source.flow_m3_s, 0.1 * source.flow_m3_s);
+  // Many sizes: half are small, few are caps, which break up on the way.
+  std::ranges::nth_element(diameters, diameters.begin() + std::ptrdiff_t(diameters.size() / 2));
+  EXPECT_NEAR(diameters[diameters.size() / 2], 3.2e-3, 0.8e-3);
+  EXPECT_GT(wide, 10.0);
+  EXPECT_LT(wide, 0.1 * double(diameters.size()));
+  EXPECT_GT(low_m4 / low_m3, 1.15 * high_m4 / high_m3);
+}
+
+TEST(Bubbles, AreCapsWhereCliftGraceAndWeberFoundThem) {
+  // Eotvos numbers of 8.8, 22 and 44.
+  EXPECT_EQ(shared::bubble_cap(0.004f), 0.0f);
+  EXPECT_NEAR(shared::bubble_cap(0.0063f), 0.35, 0.05);
+  EXPECT_EQ(shared::bubble_cap(0.009f), 1.0f);
+}
+
 TEST(Bubbles, AreAsFlatAsWellekMeasuredAndMirrorAllBeyondTheCriticalAngle) {
   // Eotvos numbers of 0.55, 3.42 and 13.7.
   EXPECT_NEAR(shared::bubble_aspect(0.001f), 0.906, 0.005);
