@@ -14,6 +14,7 @@ from rocks import texture
 from shapes import tube
 
 OUT = Path(__file__).resolve().parents[2] / "assets" / "models"
+WALL_TILE = 3.0  # metres that the texture covers
 
 
 def line(s):
@@ -26,15 +27,38 @@ def line(s):
     return np.array([x, y, z]), wide, high
 
 
+def joints(p, seed, size, step, tilt, soft):
+    """How far broken blocks stand out at points p (m): blocks of about this size, each a plane of its own step and tilt."""
+    p = p + 0.22 * size * np.column_stack([N.fbm3(p, seed + k, 1.3 / size, 2) for k in range(3)])
+    cell = np.floor(p / size).astype(int)
+    weight, out = np.zeros(len(p)), np.zeros(len(p))
+    for dx in (-1, 0, 1):
+        for dy in (-1, 0, 1):
+            for dz in (-1, 0, 1):
+                c = cell + (dx, dy, dz)
+                h = ((c[:, 0] * 73856093) ^ (c[:, 1] * 19349663) ^ (c[:, 2] * 83492791) ^ (seed * 2654435761)) & 0x7FFFFFFF
+                r = []
+                for _ in range(7):
+                    h = (h ^ (h >> 13)) * 1274126177 & 0x7FFFFFFF
+                    r.append(((h ^ (h >> 16)) & 0xFFFF) / 65535)
+                off = p - (c + 0.15 + 0.7 * np.column_stack(r[:3])) * size
+                d = (off**2 * (0.7, 1.6, 0.7)).sum(1)  # beds lie flat: blocks are wider than high
+                height = step * (r[3] - 0.5) * 2 + tilt * ((r[4] - 0.5) * off[:, 0] + (r[5] - 0.5) * off[:, 1] + (r[6] - 0.5) * off[:, 2]) * 2
+                near = np.exp(-soft * d / size**2)  # edges are worn round
+                out, weight = out + near * height, weight + near
+    return out / weight
+
+
 def main():
-    n, m = 96, 116
+    n, m = 100, 120
     rings = []
     ang = np.arange(n) / n * 2 * np.pi
     for s in np.linspace(-0.02, 1, m):
         at, wide, high = line(s)
         c, d = np.cos(ang), np.sin(ang)
         p = np.column_stack([at[0] + wide * np.sign(c) * np.abs(c) ** 0.85, at[1] + high * d, np.full(n, at[2])])
-        rough = 0.42 * N.fbm3(p, 3, 0.55, 3) + 0.20 * np.abs(N.fbm3(p, 8, 1.3, 3)) + 0.07 * N.fbm3(p, 13, 4.0, 3)
+        rough = 0.42 * N.fbm3(p, 3, 0.55, 3) + 0.10 * np.abs(N.fbm3(p, 8, 1.3, 3)) + 0.04 * N.fbm3(p, 13, 4.0, 2)
+        rough = rough + N.smooth(-0.95, -0.4, d) * (joints(p, 41, 1.3, 0.24, 0.34, 18) + joints(p, 47, 0.6, 0.07, 0.24, 10))
         ledge = 0.10 * N.smooth(0.2, 0.8, np.abs((p[:, 1] * 1.6 + 0.4 * N.fbm3(p, 17, 0.7, 2)) % 1 - 0.5) * 2)
         p = p - (rough + ledge)[:, None] * np.column_stack([c, d, np.zeros(n)])
         floor = 0.06 * N.fbm3(p, 23, 1.1, 3)
@@ -57,7 +81,7 @@ def main():
         q = np.linspace(0, 1, 7)[:, None]
         p = np.array([x, top + 0.35, z]) - q * np.array([0.04 * rng.normal(), ln + 0.35, 0.04 * rng.normal()])
         parts.append(tube(p, np.linspace(0.13, 0.012, 7) * (0.6 + 0.6 * rng.random()), 8, (False, True)))
-    part = shade(join(parts), 55)
+    part = shade(join(parts), 50)
     up = N.smooth(0.35, 0.9, part.nrm[:, 1])
     g = N.fbm3(part.pos, 31, 0.8, 4)
     light = N.smooth(1.0, 8.5, part.pos[:, 2])  # growth needs daylight
@@ -68,11 +92,11 @@ def main():
     hollow = N.fbm3(part.pos, 3, 0.55, 3) * 0.42 + 0.20 * np.abs(N.fbm3(part.pos, 8, 1.3, 3))
     c = c * (1 - 0.55 * N.smooth(0.12, -0.28, hollow))[:, None]  # what stands back has dark films and no growth
     part.col = np.column_stack([np.clip(c, 0, 1), np.ones(len(c))])
-    col, _, nm = texture(512)
+    col, _, nm = texture(1024, WALL_TILE)
     col = N.mix(col, col.mean((0, 1)), 0.5)  # worn by surge: less crust than on rocks outside
     glb = Glb("cave")
-    m_r = glb.material("rock", base=glb.texture("rock_color", col, 74), normal=glb.texture("rock_normal", nm, 64), normal_scale=0.45, rough=0.95, double=True)
-    glb.node("cave", glb.mesh("cave", [(box_uv(part, 2.6), m_r)]))
+    m_r = glb.material("rock", base=glb.texture("rock_color", col, 74), normal=glb.texture("rock_normal", nm, 64), rough=0.95, double=True)
+    glb.node("cave", glb.mesh("cave", [(box_uv(part, WALL_TILE, 8), m_r)]))
     glb.save(OUT / "cave.glb")
 
 

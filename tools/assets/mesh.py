@@ -161,10 +161,20 @@ def drop_degenerate(part, area=1e-12):
     return out
 
 
-def box_uv(part, tile):
-    """Cube projection: every triangle on its own axis plane, vertices split."""
+def box_uv(part, tile, calm=0):
+    """Cube projection: every triangle on its own axis plane, vertices split.
+
+    calm: how often facing is averaged with neighbours, so that rough surfaces are not cut into splinters.
+    """
     pos = part.pos[part.tri]
     n = np.cross(pos[:, 1] - pos[:, 0], pos[:, 2] - pos[:, 0])
+    if calm:
+        _, weld = np.unique(np.round(part.pos, 5), axis=0, return_inverse=True)
+        corner = weld[part.tri]
+        for _ in range(calm):
+            at = np.stack([np.bincount(corner.ravel(), np.repeat(n[:, k], 3)) for k in range(3)], 1)
+            n = at[corner].sum(1)
+            n /= np.linalg.norm(n, axis=1, keepdims=True) + 1e-15
     ax = np.argmax(np.abs(n), 1)
     pick = np.array([[2, 1], [0, 2], [0, 1]])[ax]
     uv = np.take_along_axis(pos, pick[:, None, :].repeat(3, 1), 2) / tile

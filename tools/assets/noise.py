@@ -84,12 +84,18 @@ def flat(n, rgb, m=None):
     return np.tile(np.asarray(rgb, float), (n, n if m is None else m, 1))
 
 
-def normal_map(height, metres_x, metres_y=None):
-    """Tangent-space normals (+y up the image) of a height field in metres over one tile."""
+def normal_map(height, metres_x, metres_y=None, steepest=None):
+    """Tangent-space normals (+y up the image) of a height field in metres over one tile.
+
+    steepest: slopes approach this, so that walls of cracks do not catch light from the side.
+    """
     metres_y = metres_x if metres_y is None else metres_y
     n, m = height.shape
     dx = (np.roll(height, -1, 1) - np.roll(height, 1, 1)) / (2 * metres_x / m)
     dy = (np.roll(height, -1, 0) - np.roll(height, 1, 0)) / (2 * metres_y / n)
+    if steepest:
+        less = 1 / np.sqrt(1 + (dx**2 + dy**2) / steepest**2)
+        dx, dy = dx * less, dy * less
     v = np.stack([-dx, dy, np.ones_like(dx)], 2)
     return v / np.linalg.norm(v, axis=2, keepdims=True) * 0.5 + 0.5
 
