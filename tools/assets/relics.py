@@ -68,7 +68,7 @@ def drum():
 
 
 def anchor():
-    """An Admiralty anchor, 1.9 m, leaning on its stock and one fluke."""
+    """An Admiralty anchor, 1.9 m, as it has held: one fluke deep in the sand, the shank sloping down to stock and ring, which lie on it."""
     shank = tube(curve([(0, 0, 0), (0, 0.9, 0), (0, 1.75, 0)], 10), [0.075, 0.07, 0.068, 0.064, 0.06, 0.058, 0.056, 0.054, 0.052, 0.05], 10)
     parts = [shank]
     arc = [(0.78 * np.sin(a), 0.78 - 0.80 * np.cos(a), 0) for a in np.linspace(-1.08, 1.08, 19)]
@@ -82,9 +82,11 @@ def anchor():
         parts.append(fluke)
     stock = tube(np.array([(0, 1.58, -0.86), (0, 1.58, -0.4), (0, 1.58, 0), (0, 1.58, 0.4), (0, 1.58, 0.86)]), [0.032, 0.042, 0.05, 0.042, 0.032], 10)
     parts += [stock, torus(0.15, 0.026, 22, 8).rot("y", 90).at(0, 1.90, 0)]
-    p = join(parts).rot("z", 89).rot("x", 12).at(0.62, 0.42, 0)
-    p = p.map(lambda q: q - [0, q[:, 1].min() + 0.06, 0])
-    return box_uv(settle(p, (0.30, 0.18, 0.12), (0.56, 0.38, 0.26), 91), 0.6)
+    p = join(parts).rot("z", 98.5).rot("x", 4).at(0.80, 0.27, 0)
+    p = settle(p, (0.30, 0.18, 0.12), (0.56, 0.38, 0.26), 91)
+    low = N.smooth(0.14, 0.02, p.pos[:, 1] + 0.05 * N.fbm3(p.pos, 93, 6, 2))  # sand sticks near the bed
+    p.col[:, :3] = N.mix(p.col[:, :3], np.array(SILT) * 0.85, 0.7 * low)
+    return box_uv(p, 0.6)
 
 
 def chain():
