@@ -76,7 +76,7 @@ def giant_kelp(top=9.0):
         q = np.linspace(0, 1, 5)[:, None]
         p = np.column_stack([(0.02 + 0.22 * q[:, 0]) * np.cos(a + 0.6 * q[:, 0]), 0.14 * (1 - q[:, 0]) ** 1.5 - 0.02, (0.02 + 0.22 * q[:, 0]) * np.sin(a + 0.6 * q[:, 0])])
         stems.append(tube(p, np.linspace(0.014, 0.005, 5), 5))
-    return join([tint(join(blades), (0.62, 0.56, 0.40), (1.0, 0.96, 0.74), top), tint(join(stems), (0.50, 0.44, 0.30), (0.78, 0.72, 0.48), top)])
+    return join([tint(join(blades), (0.80, 0.74, 0.58), (1.0, 0.97, 0.82), top), tint(join(stems), (0.50, 0.44, 0.30), (0.78, 0.72, 0.48), top)])
 
 
 def eelgrass():
@@ -94,14 +94,20 @@ def eelgrass():
     return tint(join(out), (0.26, 0.36, 0.14), (0.66, 0.92, 0.38), 0.7)
 
 
+# A blade of Macrocystis sends on some 0.4 of green and yellow light and 0.1 of blue, by reflection a third
+# of that and the rest through it: against the sun it glows golden. Factors of the texture's colour.
+GOLDEN = (1.50, 1.28, 1.22)
+
+
 def main():
     c, nm = leaf_texture()
-    for name, make, heights, seconds, degrees in (
-        ("giant_kelp", giant_kelp, np.array([0.0, 1.2, 2.6, 4.0, 5.4, 6.8, 8.2]), 6.0, 3.4),
-        ("eelgrass", eelgrass, np.array([0.0, 0.15, 0.32, 0.52]), 4.0, 7.0),
+    for name, make, heights, seconds, degrees, tone, thin in (
+        ("giant_kelp", giant_kelp, np.array([0.0, 1.2, 2.6, 4.0, 5.4, 6.8, 8.2]), 6.0, 3.4, GOLDEN, 0.68),
+        ("eelgrass", eelgrass, np.array([0.0, 0.15, 0.32, 0.52]), 4.0, 7.0, (1.1, 1.15, 1.1), 0.55),
     ):
         g = Glb(name)
-        m = g.material("leaf", base=g.texture("leaf_color", c[::2, ::2], 80), normal=g.texture("leaf_normal", nm[::4, ::4], 76), rough=0.5, double=True, thin=0.45)
+        leaf = np.clip(c[::2, ::2] * np.array(tone), 0, 1)
+        m = g.material("leaf", base=g.texture("leaf_color", leaf, 80), normal=g.texture("leaf_normal", nm[::4, ::4], 76), rough=0.5, double=True, thin=thin)
         sway(g, name, make(), m, heights, seconds, degrees)
         g.save(OUT / f"{name}.glb")
 
