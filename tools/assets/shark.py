@@ -15,11 +15,15 @@ from shapes import foil, sphere
 
 OUT = Path(__file__).resolve().parents[2] / "assets" / "models"
 JOINT_Z = np.array([-0.95, -0.50, -0.05, 0.38, 0.74, 1.04])
-Z = [-1.5, -1.485, -1.45, -1.36, -1.22, -1.0, -0.72, -0.35, 0, 0.35, 0.65, 0.87, 1.0, 1.10]
-WIDE = [0.0005, 0.035, 0.068, 0.112, 0.150, 0.188, 0.224, 0.240, 0.224, 0.165, 0.100, 0.060, 0.040, 0.020]
-UP = [0.0005, 0.022, 0.042, 0.072, 0.108, 0.155, 0.205, 0.235, 0.218, 0.165, 0.108, 0.070, 0.052, 0.035]
-DOWN = [0.0005, 0.020, 0.036, 0.055, 0.085, 0.135, 0.190, 0.222, 0.205, 0.155, 0.098, 0.060, 0.048, 0.035]
-MID = [0.012, 0.012, 0.012, 0.012, 0.010, 0.004, 0, 0, 0, 0.006, 0.016, 0.024, 0.030, 0.034]
+# The body narrows to a blade's edge within the tail fin.
+Z = [-1.5, -1.485, -1.45, -1.36, -1.22, -1.0, -0.72, -0.35, 0, 0.35, 0.65, 0.87, 1.0, 1.07, 1.12, 1.16]
+WIDE = [0.0005, 0.035, 0.068, 0.112, 0.150, 0.188, 0.224, 0.240, 0.224, 0.165, 0.100, 0.058, 0.035, 0.022, 0.011, 0.002]
+UP = [0.0005, 0.022, 0.042, 0.072, 0.108, 0.155, 0.205, 0.235, 0.218, 0.165, 0.108, 0.070, 0.054, 0.050, 0.046, 0.040]
+DOWN = [0.0005, 0.020, 0.036, 0.055, 0.085, 0.135, 0.190, 0.222, 0.205, 0.155, 0.098, 0.062, 0.050, 0.046, 0.042, 0.036]
+MID = [0.012, 0.012, 0.012, 0.012, 0.010, 0.004, 0, 0, 0, 0.006, 0.016, 0.024, 0.030, 0.036, 0.042, 0.046]
+# Gill slits: z at mid height, and half their length as a share of the girth from back to belly.
+GILLS = ((-0.985, 0.150), (-0.940, 0.155), (-0.896, 0.150), (-0.853, 0.135), (-0.812, 0.110))
+GILL_SLANT, GILL_MID = 0.11, 0.49
 
 
 def spline(x, y):
@@ -52,7 +56,13 @@ def mouth(x):
     return -1.318 + 13.0 * x**2
 
 
+def slant(z):
+    """How much rings lean along the gill slits, so that the slits run along rings."""
+    return GILL_SLANT * N.smooth(-1.16, -1.0, z) * N.smooth(-0.62, -0.80, z)
+
+
 def body():
+    edges = [g + d for g, _ in GILLS for d in (-0.026, -0.010, -0.002, 0.0035, 0.013)]
     zs = np.unique(
         np.round(
             np.concatenate(
@@ -60,8 +70,11 @@ def body():
                     np.linspace(-1.5, -1.42, 8),
                     np.linspace(-1.42, -1.33, 5),
                     np.linspace(-1.33, -1.12, 32),
-                    np.linspace(-1.12, -0.6, 16),
-                    np.linspace(-0.6, 1.10, 36),
+                    np.linspace(-1.12, -1.02, 4),
+                    edges,
+                    np.linspace(-0.79, -0.6, 6),
+                    np.linspace(-0.6, 1.0, 34),
+                    np.linspace(1.0, 1.16, 9),
                 ]
             ),
             4,
@@ -69,26 +82,29 @@ def body():
     )
     v = np.linspace(0, 1, 31)
     rows, uvs = [], []
-    for z in zs:
+    for ring in zs:
+        z = ring + slant(ring) * (v - GILL_MID) * np.sin(np.pi * v)
         a = np.pi * v
         w, up, dn, c = W(z), U(z), D(z), C(z)
         flat = N.smooth(-1.0, -1.3, z)
         x = w * np.sin(a) ** (1 - 0.12 * flat)
         cy = np.cos(a)
         y = c + np.where(cy > 0, up * np.abs(cy) ** 0.95, -dn * np.abs(cy) ** (1 - 0.35 * flat))
-        keel = N.smooth(0.80, 1.0, z) * np.exp(-(((v - 0.5) / 0.08) ** 2)) * 0.018
+        # A low keel on each side of the tail's root.
+        keel = N.smooth(0.72, 1.0, z) * N.smooth(1.14, 1.00, z) * np.exp(-(((v - 0.5) / 0.16) ** 2)) * 0.007
         x = x + keel
         dm = z - mouth(x)
         under = N.smooth(0.62, 0.75, v) * (x < 0.125)
-        y = y + under * (0.020 * np.exp(-((dm / 0.014) ** 2)) - 0.010 * np.exp(-(((dm - 0.045) / 0.03) ** 2)))
-        gill = (
-            sum(np.exp(-(((z - (-0.985 + 0.042 * k) - 0.10 * (v - 0.5)) / 0.008) ** 2)) for k in range(5))
-            * N.smooth(0.33, 0.38, v)
-            * N.smooth(0.66, 0.60, v)
-        )
-        x = x - 0.006 * gill
-        rows.append(np.column_stack([np.maximum(x, 0), y, np.full(len(v), z)]))
-        uvs.append(np.column_stack([np.full(len(v), (z + 1.5) / 3), 0.02 + 0.96 * v]))
+        y = y + under * (0.011 * np.exp(-((dm / 0.032) ** 2)) - 0.006 * np.exp(-(((dm - 0.075) / 0.045) ** 2)))
+        # Each slit: a flap that rises towards its free edge, and behind it a fold.
+        for g, half in GILLS:
+            d = ring - g
+            long = N.smooth(half, half * 0.7, np.abs(v - GILL_MID))
+            flap = 0.0075 * N.smooth(-0.030, -0.003, d) * (d < 0)
+            fold = -0.011 * N.smooth(0.014, 0.003, d) * (d > 0)
+            x = x + long * (flap + fold)
+        rows.append(np.column_stack([np.maximum(x, 0), y, z]))
+        uvs.append(np.column_stack([(z + 1.5) / 3, 0.02 + 0.96 * v]))
     p = loft(np.array(rows), (False, False), wrap=False, orient=False)
     p.uv = np.concatenate(uvs)
     t = p.pos[p.tri]
@@ -99,105 +115,127 @@ def body():
     return both
 
 
-def fin(sections, light_below=False, tip=None, n=9):
-    """Foil with the skin's texture; tip = (point, radius) darkens the end."""
-    p = shade(foil(sections, n), 60)
+def finer(sections, n):
+    """The same fin by n sections, along smooth edges."""
+    table = np.array([np.concatenate([lead, trail, [thick]]) for lead, trail, thick, _ in sections], float)
+    k = np.arange(len(sections))
+    t = np.linspace(0, len(sections) - 1, n)
+    smooth = np.column_stack([spline(k, table[:, i])(t) for i in range(7)])
+    return [(row[:3], row[3:6], row[6], sections[0][3]) for row in smooth]
+
+
+def fin(sections, light_below=False, tip=None, n=11, rows=15):
+    """Foil with the skin's colours; tip = (point, radius) darkens the end."""
+    p = shade(foil(finer(sections, rows), n), 60)
     v = np.full(len(p.pos), 0.16)
     if light_below:
-        v = np.where(p.nrm[:, 1] < -0.1, 0.88, 0.18)
-    p.uv = np.column_stack(
-        [
-            (p.pos[:, 2] + 1.5) / 3 + 0.05 * p.pos[:, 1],
-            v * 0.8 + 0.22 * np.abs(p.pos[:, 1]) + 0.25 * np.abs(p.pos[:, 0]) * (0 if light_below else 1),
-        ]
-    )
-    dark = 0 * v if tip is None else N.smooth(tip[1], tip[1] * 0.35, np.linalg.norm(p.pos - np.array(tip[0]), axis=1))
-    p.col = np.column_stack([np.ones((len(v), 3)) * (1 - 0.62 * dark)[:, None], np.ones(len(v))])
+        v = np.where(p.nrm[:, 1] < -0.1, 0.86, 0.18)
+    # As fine as on the body: 3 m along, 1.1 m from back to belly.
+    out = np.hypot(p.pos[:, 0], p.pos[:, 1])
+    p.uv = np.column_stack([(p.pos[:, 2] + 1.5) / 3, v + 0.18 * (out - out.mean())])
+    dark = 0 * v if tip is None else N.smooth(tip[1], tip[1] * 0.3, np.linalg.norm(p.pos - np.array(tip[0]), axis=1) + 0.03 * N.fbm3(p.pos, 9, 9, 2))
+    p.col = np.column_stack([np.ones((len(v), 3)) * (1 - 0.55 * dark)[:, None], np.ones(len(v))])
     return p
 
 
 def fins():
-    X, Y = [1, 0, 0], [0, 1, 0]
+    """Each swells where it leaves the body, and ends in a rounded tip over a hollow rear edge."""
+    X, Y, V = [1, 0, 0], [0, 1, 0], [0.6, 0.8, 0]
     out = [
         fin(
             [
-                ([0, 0.12, -0.42], [0, 0.10, 0.10], 0.052, X),
-                ([0, 0.24, -0.36], [0, 0.20, 0.10], 0.046, X),
-                ([0, 0.40, -0.20], [0, 0.36, 0.11], 0.030, X),
-                ([0, 0.53, -0.04], [0, 0.50, 0.125], 0.016, X),
-                ([0, 0.585, 0.045], [0, 0.565, 0.140], 0.009, X),
-                ([0, 0.607, 0.095], [0, 0.602, 0.140], 0.003, X),
+                ([0, 0.15, -0.50], [0, 0.14, 0.20], 0.20, X),
+                ([0, 0.225, -0.44], [0, 0.222, 0.165], 0.10, X),
+                ([0, 0.27, -0.385], [0, 0.245, 0.115], 0.060, X),
+                ([0, 0.40, -0.235], [0, 0.36, 0.065], 0.036, X),
+                ([0, 0.51, -0.095], [0, 0.48, 0.075], 0.022, X),
+                ([0, 0.575, 0.005], [0, 0.558, 0.105], 0.013, X),
+                ([0, 0.602, 0.070], [0, 0.597, 0.125], 0.006, X),
+                ([0, 0.606, 0.098], [0, 0.605, 0.118], 0.002, X),
             ],
-            tip=([0, 0.62, 0.14], 0.22),
+            tip=([0, 0.64, 0.14], 0.22),
         )
     ]
     out.append(
         fin(
             [
-                ([0, 0.06, 0.58], [0, 0.07, 0.78], 0.020, X),
-                ([0, 0.155, 0.64], [0, 0.14, 0.78], 0.014, X),
-                ([0, 0.198, 0.72], [0, 0.19, 0.82], 0.006, X),
-                ([0, 0.215, 0.765], [0, 0.21, 0.83], 0.002, X),
+                ([0, 0.07, 0.53], [0, 0.065, 0.84], 0.075, X),
+                ([0, 0.125, 0.585], [0, 0.108, 0.845], 0.032, X),
+                ([0, 0.165, 0.64], [0, 0.145, 0.79], 0.018, X),
+                ([0, 0.198, 0.70], [0, 0.185, 0.785], 0.009, X),
+                ([0, 0.212, 0.75], [0, 0.209, 0.80], 0.003, X),
             ],
-            tip=([0, 0.21, 0.81], 0.10),
+            tip=([0, 0.225, 0.82], 0.12),
+            n=9,
+            rows=9,
         )
     )
     out.append(
         fin(
             [
-                ([0, -0.04, 0.62], [0, -0.03, 0.80], 0.020, X),
-                ([0, -0.13, 0.69], [0, -0.11, 0.81], 0.012, X),
-                ([0, -0.185, 0.77], [0, -0.175, 0.84], 0.005, X),
+                ([0, -0.03, 0.58], [0, -0.02, 0.85], 0.070, X),
+                ([0, -0.085, 0.635], [0, -0.065, 0.85], 0.030, X),
+                ([0, -0.135, 0.69], [0, -0.115, 0.80], 0.014, X),
+                ([0, -0.185, 0.765], [0, -0.178, 0.82], 0.004, X),
             ],
-            tip=([0, -0.19, 0.84], 0.10),
+            tip=([0, -0.20, 0.84], 0.12),
+            n=9,
+            rows=9,
         )
     )
-    # tail: upper and lower lobes share the root
+    # The tail in one piece, from the lower lobe's tip over the body's end to the upper one's.
     out.append(
         fin(
             [
-                ([0, 0.0, 0.96], [0, 0.03, 1.22], 0.040, X),
-                ([0, 0.10, 1.02], [0, 0.10, 1.245], 0.030, X),
-                ([0, 0.26, 1.17], [0, 0.25, 1.335], 0.018, X),
-                ([0, 0.42, 1.33], [0, 0.41, 1.435], 0.010, X),
-                ([0, 0.50, 1.415], [0, 0.495, 1.480], 0.006, X),
-                ([0, 0.545, 1.475], [0, 0.543, 1.497], 0.002, X),
+                ([0, -0.252, 1.215], [0, -0.250, 1.245], 0.002, X),
+                ([0, -0.225, 1.170], [0, -0.212, 1.240], 0.007, X),
+                ([0, -0.16, 1.110], [0, -0.14, 1.215], 0.016, X),
+                ([0, -0.07, 1.045], [0, -0.06, 1.200], 0.030, X),
+                ([0, -0.01, 0.99], [0, -0.00, 1.205], 0.050, X),
+                ([0, 0.04, 0.95], [0, 0.045, 1.215], 0.066, X),
+                ([0, 0.09, 0.98], [0, 0.09, 1.235], 0.054, X),
+                ([0, 0.16, 1.065], [0, 0.155, 1.270], 0.034, X),
+                ([0, 0.28, 1.185], [0, 0.27, 1.345], 0.022, X),
+                ([0, 0.40, 1.305], [0, 0.385, 1.420], 0.014, X),
+                ([0, 0.465, 1.372], [0, 0.440, 1.452], 0.009, X),
+                ([0, 0.50, 1.408], [0, 0.470, 1.492], 0.006, X),
+                ([0, 0.535, 1.452], [0, 0.522, 1.500], 0.003, X),
+                ([0, 0.545, 1.475], [0, 0.543, 1.490], 0.001, X),
             ],
-            tip=([0, 0.50, 1.50], 0.42),
+            tip=([0, 0.53, 1.52], 0.42),
+            rows=27,
         )
     )
-    out.append(
-        fin(
-            [
-                ([0, 0.06, 0.96], [0, 0.06, 1.23], 0.040, X),
-                ([0, -0.04, 1.01], [0, -0.03, 1.215], 0.028, X),
-                ([0, -0.15, 1.10], [0, -0.14, 1.225], 0.016, X),
-                ([0, -0.255, 1.21], [0, -0.25, 1.265], 0.004, X),
-            ],
-            tip=([0, -0.26, 1.26], 0.30),
-        )
-    )
+    low = out[-1]
+    dark = N.smooth(0.28, 0.08, np.linalg.norm(low.pos - np.array([0, -0.27, 1.26]), axis=1))
+    low.col[:, :3] *= (1 - 0.55 * dark)[:, None]
     pect = [
         fin(
             [
-                ([0.12, -0.085, -0.80], [0.11, -0.10, -0.48], 0.052, Y),
-                ([0.24, -0.125, -0.74], [0.23, -0.13, -0.46], 0.040, Y),
-                ([0.42, -0.185, -0.60], [0.40, -0.185, -0.38], 0.024, Y),
-                ([0.58, -0.24, -0.43], [0.56, -0.238, -0.30], 0.012, Y),
-                ([0.65, -0.266, -0.335], [0.635, -0.262, -0.255], 0.007, Y),
-                ([0.688, -0.280, -0.270], [0.682, -0.278, -0.245], 0.002, Y),
+                ([0.08, -0.075, -0.88], [0.08, -0.10, -0.40], 0.20, Y),
+                ([0.165, -0.103, -0.815], [0.155, -0.117, -0.40], 0.105, Y),
+                ([0.24, -0.128, -0.755], [0.215, -0.132, -0.425], 0.062, Y),
+                ([0.42, -0.186, -0.610], [0.385, -0.185, -0.405], 0.034, Y),
+                ([0.56, -0.234, -0.465], [0.535, -0.231, -0.335], 0.020, Y),
+                ([0.65, -0.265, -0.350], [0.632, -0.262, -0.268], 0.011, Y),
+                ([0.685, -0.278, -0.290], [0.676, -0.276, -0.247], 0.005, Y),
+                ([0.690, -0.280, -0.268], [0.687, -0.279, -0.252], 0.001, Y),
             ],
             True,
-            ([0.69, -0.28, -0.26], 0.22),
+            ([0.72, -0.29, -0.25], 0.26),
         ),
         fin(
             [
-                ([0.05, -0.13, 0.30], [0.04, -0.11, 0.52], 0.024, [0.6, 0.8, 0]),
-                ([0.12, -0.185, 0.37], [0.10, -0.17, 0.53], 0.016, [0.6, 0.8, 0]),
-                ([0.17, -0.235, 0.47], [0.16, -0.225, 0.565], 0.005, [0.6, 0.8, 0]),
+                ([0.03, -0.105, 0.25], [0.03, -0.09, 0.57], 0.075, V),
+                ([0.075, -0.150, 0.31], [0.065, -0.135, 0.575], 0.034, V),
+                ([0.125, -0.195, 0.385], [0.105, -0.178, 0.535], 0.018, V),
+                ([0.165, -0.232, 0.465], [0.155, -0.222, 0.550], 0.007, V),
+                ([0.176, -0.241, 0.510], [0.173, -0.239, 0.552], 0.002, V),
             ],
             True,
-            ([0.17, -0.235, 0.56], 0.10),
+            ([0.18, -0.25, 0.57], 0.12),
+            9,
+            9,
         ),
     ]
     return out + pect + [p.mirrored() for p in pect]
@@ -232,28 +270,42 @@ def skin_texture(n=512, m=1024):
     """U nose to tail, V back (0) to belly (1)."""
     v = ((np.arange(n) + 0.5) / n)[:, None] * np.ones((1, m))
     z = (((np.arange(m) + 0.5) / m) * 3 - 1.5)[None, :] * np.ones((n, 1))
-    a, f = N.spectral(n, 3, 1.8, 2, m=m), N.spectral(n, 4, 0.5, 50, m=m)
-    top, low = np.array((0.40, 0.43, 0.44)), np.array((0.90, 0.90, 0.87))
-    line = 0.56 + 0.035 * np.sin(z * 2.1 + 0.8) + 0.05 * N.smooth(-1.1, -1.45, z) + 0.012 * a
-    belly = N.smooth(-0.035, 0.05, v - line)
-    col = N.mix(N.flat(n, top, m) * (1 - 0.16 * N.smooth(0.35, 0.0, v))[..., None], low, belly)
+    a, f = N.spectral(n, 3, 3.2, 2, m=m), N.spectral(n, 4, 1.0, 60, m=m)
+    ragged = N.spectral(n, 6, 2.8, 8, 160, stretch=(1.6, 1), m=m)
+    top, low = np.array((0.335, 0.350, 0.355)), np.array((0.88, 0.88, 0.85))
+    line = 0.56 + 0.035 * np.sin(z * 2.1 + 0.8) + 0.05 * N.smooth(-1.1, -1.45, z) + 0.012 * a + 0.010 * ragged + 0.5 * N.smooth(0.80, 1.08, z)
+    # Dark above, pale below, over a flank between the two: the border is soft and uneven.
+    flank = N.smooth(-0.30, 0.02, v - line + 0.02 * a)
+    belly = N.smooth(-0.05, 0.05, v - line)
+    col = N.mix(N.flat(n, top, m) * (1 - 0.20 * N.smooth(0.35, 0.0, v))[..., None], np.array((0.47, 0.48, 0.47)), flank)
+    col = N.mix(col, low, belly)
     band = N.smooth(0.03, 0.0, np.abs(v - line + 0.055 - 0.02 * z)) * N.smooth(-0.6, 0.0, z) * N.smooth(1.0, 0.6, z)
-    col = N.mix(col, low * 0.86, band * 0.35)
-    col *= (1 + 0.035 * a + 0.015 * f)[..., None]
-    spots = N.smooth(1.6, 2.6, N.spectral(n, 5, 1.0, 10, 80, m=m)) * (1 - belly)
-    col *= (1 - 0.12 * spots)[..., None]
+    col = N.mix(col, low * 0.86, band * 0.30)
+    col *= (1 + 0.045 * a + 0.012 * f + 0.02 * ragged * (1 - belly))[..., None]
+    spots = N.smooth(1.6, 2.6, N.spectral(n, 5, 1.6, 10, 80, m=m)) * (1 - belly)
+    col *= (1 - 0.15 * spots)[..., None]
+    scars = np.zeros((n, m))
+    rng = np.random.default_rng(8)
+    for _ in range(16):  # bites of courtship and scrapes, fine and pale
+        at, turn, long = (0.1 + 0.5 * rng.random(), -0.9 + 1.7 * rng.random()), rng.normal(0, 0.5), 0.02 + 0.07 * rng.random()
+        u, w = z - at[1], (v - at[0]) * 0.55
+        along, across = u * np.cos(turn) + w * np.sin(turn), w * np.cos(turn) - u * np.sin(turn) + 2.0 * u**2
+        scars = np.maximum(scars, N.smooth(0.0030, 0.0012, np.abs(across)) * N.smooth(long, long * 0.5, np.abs(along)))
+    col = N.mix(col, low * 0.8, 0.16 * scars)
     gill = np.zeros((n, m))
-    for k in range(5):
-        d = np.abs(z - (-0.985 + 0.042 * k) - 0.10 * (v - 0.5))
-        gill = np.maximum(gill, N.smooth(0.0065, 0.002, d) * N.smooth(0.33, 0.37, v) * N.smooth(0.66, 0.60, v))
-    col = N.mix(col, (0.14, 0.13, 0.13), gill * 0.85)
+    vb = (v - 0.02) / 0.96
+    for g, half in GILLS:
+        d = z - g - GILL_SLANT * (vb - GILL_MID) * np.sin(np.pi * np.clip(vb, 0, 1))
+        long = N.smooth(half, half * 0.7, np.abs(vb - GILL_MID))
+        gill = np.maximum(gill, N.smooth(-0.004, 0.001, d) * N.smooth(0.012, 0.003, d) * long)
+    col = N.mix(col, (0.16, 0.15, 0.15), gill * 0.75)
     x = np.sin(np.pi * np.clip((v - 0.02) / 0.96, 0, 1)) * np.interp(z, Z, WIDE)
     dm = np.abs(z - mouth(x))
-    lips = N.smooth(0.014, 0.006, dm) * N.smooth(0.64, 0.72, v) * (z < -1.13)
-    col = N.mix(col, (0.22, 0.13, 0.12), lips * 0.9)
+    lips = N.smooth(0.016, 0.004, dm) * N.smooth(0.64, 0.72, v) * (z < -1.13)
+    col = N.mix(col, (0.22, 0.13, 0.12), lips * 0.75)
     nose = N.smooth(0.012, 0.006, np.hypot((z + 1.425), (v - 0.74) * 0.22))
     col = N.mix(col, (0.12, 0.11, 0.11), nose)
-    h = 0.00025 * f + 0.001 * a - 0.006 * gill - 0.004 * lips
+    h = 0.00012 * f + 0.0015 * a - 0.002 * gill - 0.003 * lips
     rough = 0.50 + 0.04 * f + 0.08 * belly
     return np.clip(col, 0, 1), N.rough_metal(np.clip(rough, 0.3, 0.8)), N.normal_map(h, 3.0, 1.1)
 
