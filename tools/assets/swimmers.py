@@ -360,6 +360,37 @@ def fin(points, length):
     return Part(q, tri, np.column_stack([(q[:, 2] + length / 2) / length * 0.98, np.full(n, 0.06) + 0.88 * (q[:, 1] < 0)]))
 
 
+def rays(rgb, root, outer):
+    """A fin of rays in a colour (linear), from its root to its outer edge, both as (y, z), or (x, y, z) of one that stands out.
+
+    u runs out along the rays, v from ray to ray.
+    """
+    a, b = (q_list([q if len(q) == 3 else (0.0, *q) for q in edge], len(outer)) for edge in (root, outer))
+    n = len(b)
+    v, k = np.linspace(0.0, 1.0, n), np.arange(n - 1)
+    tri = np.concatenate([np.stack([k, k + n, k + n + 1], 1), np.stack([k, k + n + 1, k + 1], 1)])
+    uv = np.concatenate([np.column_stack([0 * v + u, v]) for u in (0.02, 0.98)])
+    return Part(np.concatenate([a, b]), tri, uv, col=np.tile([*rgb, 1.0], (2 * n, 1)))
+
+
+def q_list(points, n):
+    """n points evenly along a line through some."""
+    p = np.asarray(points, float)
+    t = np.linspace(0, len(p) - 1, n)
+    return np.column_stack([np.interp(t, np.arange(len(p)), p[:, i]) for i in range(p.shape[1])])
+
+
+def ray_picture(n=64, count=14):
+    """Dark rays that fork outwards on a clear membrane, which hangs back between their tips; RGBA."""
+    v = ((np.arange(n) + 0.5) / n)[:, None] * np.ones((1, n))
+    u = ((np.arange(n) + 0.5) / n)[None, :] * np.ones((n, 1))
+    one = np.abs((v * count) % 1 - 0.5) * 2  # 0 on a ray
+    two = np.abs((v * count * 2 + 0.5) % 1 - 0.5) * 2
+    line = N.smooth(0.55, 0.15, N.mix(one, np.minimum(1, two + 0.15), N.smooth(0.45, 0.7, u)))
+    tone = 0.86 - 0.36 * line * (1 - 0.5 * u) + 0.10 * N.smooth(0.80, 0.98, u) - 0.25 * N.smooth(0.16, 0.0, u)
+    return np.dstack([np.clip(tone, 0, 1)] * 3 + [N.smooth(0.99, 0.96, u + 0.10 * one)])
+
+
 def fish_picture(back, flank, belly, marks, n=64, m=128):
     v = ((np.arange(n) + 0.5) / n)[:, None] * np.ones((1, m))
     u = ((np.arange(m) + 0.5) / m)[None, :] * np.ones((n, 1))
@@ -378,10 +409,11 @@ def fish_picture(back, flank, belly, marks, n=64, m=128):
 def school_fish():
     g = Glb("school_fish")
 
-    def add(name, parts, picture, at, rough):
+    def add(name, parts, picture, at, rough, m_f=None):
         b = g.texture(f"{name}_color", picture, 84)
         m_b = g.material(f"{name}_body", base=b, rough=rough)
-        m_f = g.material(f"{name}_fin", base=b, rough=0.6, double=True)
+        if m_f is None:
+            m_f = g.material(f"{name}_fin", base=b, rough=0.6, double=True)
         g.node(name, g.mesh(name, [(shade(parts[0], 80), m_b), (shade(join(parts[1:]), 80), m_f)]), at=at)
 
     # 58 triangles, for thousands
@@ -399,20 +431,29 @@ def school_fish():
     b_far = len(g.doc["textures"]) - 1
     m_far = g.material("sardine_far", base=b_far, rough=0.35)
     g.node("sardine_far", g.mesh("sardine_far", [(shade(join([right, right.mirrored()]), 80), m_far)]), at=(-0.5, 0.3, 0))
+    # Light comes through fins.
+    m_rays = g.material("rays", base=g.texture("rays_color", ray_picture()), rough=0.5, double=True, mask=0.5, thin=0.6)
+    gold, yellow, blue = (0.42, 0.31, 0.07), (0.62, 0.40, 0.03), (0.03, 0.09, 0.30)
     zs = [-0.16, -0.152, -0.13, -0.095, -0.05, 0.0, 0.05, 0.10]
     snapper = [fish_body(zs, [0.004, 0.018, 0.036, 0.053, 0.060, 0.053, 0.036, 0.017], [0.003, 0.010, 0.018, 0.025, 0.027, 0.022, 0.014, 0.005], 9),
-               fin([(0.0, 0.092), (0.016, 0.096), (0.050, 0.150), (0.054, 0.160), (0.018, 0.138), (0.0, 0.130), (-0.018, 0.138), (-0.054, 0.160), (-0.050, 0.150), (-0.016, 0.096)], 0.32),
-               fin([(0.050, 0.0), (0.056, -0.080), (0.078, -0.068), (0.084, -0.030), (0.072, 0.01), (0.066, 0.05), (0.030, 0.070), (0.028, 0.06)], 0.32),
-               fin([(-0.045, 0.02), (-0.030, 0.06), (-0.046, 0.072), (-0.066, 0.052), (-0.062, 0.025)], 0.32), fin([(-0.045, -0.07), (-0.050, -0.045), (-0.078, -0.028), (-0.074, -0.045)], 0.32)]
+               rays(gold, [(0.016, 0.088), (0.017, 0.095), (-0.017, 0.095), (-0.016, 0.088)], [(0.056, 0.163), (0.040, 0.153), (0.024, 0.142), (0.010, 0.135), (0.0, 0.133), (-0.010, 0.135), (-0.024, 0.142), (-0.040, 0.153), (-0.056, 0.163)]),
+               rays(gold, [(0.052, -0.082), (0.056, -0.045), (0.050, 0.005), (0.036, 0.050), (0.026, 0.072)], [(0.066, -0.078), (0.085, -0.058), (0.086, -0.034), (0.080, -0.010), (0.074, 0.014), (0.074, 0.036), (0.070, 0.060), (0.052, 0.084), (0.034, 0.086)]),
+               rays(gold, [(-0.046, 0.015), (-0.036, 0.045), (-0.024, 0.066)], [(-0.066, 0.030), (-0.070, 0.052), (-0.062, 0.070), (-0.046, 0.080), (-0.030, 0.080)])]
+    for way in (1, -1):
+        snapper += [rays(gold, [(way * 0.021, -0.008, -0.086), (way * 0.022, -0.024, -0.082)], [(way * 0.036, -0.006, -0.030), (way * 0.046, -0.018, -0.024), (way * 0.048, -0.030, -0.030), (way * 0.040, -0.038, -0.046), (way * 0.028, -0.034, -0.066)]),
+                    rays(gold, [(way * 0.008, -0.047, -0.075), (way * 0.006, -0.049, -0.055)], [(way * 0.022, -0.070, -0.052), (way * 0.020, -0.074, -0.036), (way * 0.010, -0.064, -0.028)])]
     bands = lambda col, u, v: N.mix(col, (0.16, 0.34, 0.50), 0.8 * sum(N.smooth(0.022, 0.012, np.abs(v - b)) for b in (0.26, 0.40, 0.54)) * N.smooth(0.1, 0.16, u))
-    add("snapper", snapper, fish_picture((0.52, 0.40, 0.10), (0.72, 0.56, 0.14), (0.66, 0.60, 0.46), bands), (0, 0, 0), 0.45)
+    add("snapper", snapper, fish_picture((0.52, 0.40, 0.10), (0.72, 0.56, 0.14), (0.66, 0.60, 0.46), bands), (0, 0, 0), 0.45, m_rays)
     zs = [-0.062, -0.057, -0.045, -0.026, -0.004, 0.018, 0.036, 0.046]
     damsel = [fish_body(zs, [0.002, 0.012, 0.024, 0.034, 0.037, 0.031, 0.017, 0.009], [0.001, 0.005, 0.009, 0.012, 0.012, 0.009, 0.005, 0.002], 8),
-              fin([(0.0, 0.040), (0.010, 0.044), (0.026, 0.066), (0.006, 0.056), (-0.006, 0.056), (-0.026, 0.066), (-0.010, 0.044)], 0.124),
-              fin([(0.030, 0.005), (0.032, -0.030), (0.046, -0.018), (0.050, 0.014), (0.044, 0.034), (0.018, 0.032)], 0.124),
-              fin([(-0.028, 0.005), (-0.018, 0.032), (-0.038, 0.036), (-0.050, 0.018), (-0.042, 0.0)], 0.124), fin([(-0.028, -0.030), (-0.030, -0.016), (-0.052, -0.004), (-0.046, -0.018)], 0.124)]
+              rays(yellow, [(0.009, 0.040), (0.010, 0.045), (-0.010, 0.045), (-0.009, 0.040)], [(0.029, 0.069), (0.018, 0.063), (0.008, 0.058), (0.0, 0.056), (-0.008, 0.058), (-0.018, 0.063), (-0.029, 0.069)]),
+              rays(blue, [(0.033, -0.032), (0.036, -0.008), (0.029, 0.018), (0.016, 0.036)], [(0.043, -0.028), (0.050, -0.014), (0.052, 0.004), (0.054, 0.022), (0.054, 0.040), (0.040, 0.046), (0.024, 0.044)]),
+              rays(blue, [(-0.034, 0.000), (-0.028, 0.018), (-0.014, 0.036)], [(-0.046, 0.012), (-0.054, 0.028), (-0.052, 0.042), (-0.036, 0.046), (-0.022, 0.043)])]
+    for way in (1, -1):
+        damsel += [rays(blue, [(way * 0.0105, -0.001, -0.030), (way * 0.011, -0.011, -0.029)], [(way * 0.020, 0.002, -0.008), (way * 0.025, -0.006, -0.004), (way * 0.024, -0.014, -0.009), (way * 0.017, -0.017, -0.020)]),
+                   rays(blue, [(way * 0.004, -0.033, -0.026), (way * 0.003, -0.035, -0.015)], [(way * 0.010, -0.052, -0.010), (way * 0.009, -0.055, 0.000), (way * 0.004, -0.044, 0.000)])]
     tail = lambda col, u, v: N.mix(col, (0.85, 0.66, 0.10), N.smooth(0.72, 0.80, u + 0.25 * (v - 0.4)))
-    add("damsel", damsel, fish_picture((0.05, 0.12, 0.36), (0.10, 0.24, 0.58), (0.20, 0.36, 0.62), tail), (0.4, 0, 0), 0.5)
+    add("damsel", damsel, fish_picture((0.05, 0.12, 0.36), (0.10, 0.24, 0.58), (0.20, 0.36, 0.62), tail), (0.4, 0, 0), 0.5, m_rays)
     g.save(OUT / "school_fish.glb")
 
 
