@@ -48,7 +48,7 @@ def staghorn():
             path.append(path[-1] + way * length / (n - 1))
         last = left == 0
         rad = np.linspace(r, r * (0.35 if last else 0.82), n)
-        parts.append((tube(np.array(path), rad, 5 if left > 1 else 4, (False, True)), len(tips)))
+        parts.append((tube(np.array(path), rad, 6 if left > 1 else 5, (False, True)), len(tips)))
         tips.append(path[-1] if last else None)
         if last:
             return
@@ -62,7 +62,7 @@ def staghorn():
         s = 0.03 + 0.012 * k
         grow(np.array([s * np.cos(a), -0.03, s * np.sin(a)]), unit([np.cos(a), 0.75 + 0.7 * rng.random(), np.sin(a)]), 0.019, 3 if k % 3 else 2)
     ends = np.array([t for t in tips if t is not None])
-    p = shade(join([q for q, _ in parts]), 70)
+    p = shade(join([q for q, _ in parts]), 100)  # round, though of few sides
     d = np.min(np.linalg.norm(p.pos[:, None, :] - ends[None], axis=2), axis=1)
     return box_uv(paint(p, (0.46, 0.31, 0.17), (0.92, 0.80, 0.62), lambda _: N.smooth(0.075, 0.0, d) * 0.9, 11), 0.25)
 

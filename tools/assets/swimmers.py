@@ -84,10 +84,11 @@ def turtle():
     if shade(belly, 80).nrm[:, 1].mean() > 0:
         belly = belly.flipped()
     belly = coloured(belly, lambda p: np.tile([0.90, 0.84, 0.62], (len(p.pos), 1)))
-    # head and neck
-    prof = [(0.082, -0.36), (0.078, -0.44), (0.066, -0.50), (0.072, -0.555), (0.083, -0.605), (0.079, -0.655), (0.060, -0.700), (0.034, -0.728), (0.004, -0.738)]
+    # head, and a neck that is thick at the shell, in folds
+    prof = [(0.098, -0.330), (0.104, -0.385), (0.097, -0.415), (0.099, -0.428), (0.090, -0.446), (0.093, -0.458), (0.084, -0.475), (0.086, -0.487), (0.074, -0.507), (0.075, -0.530), (0.078, -0.560), (0.083, -0.605), (0.079, -0.655), (0.060, -0.700), (0.034, -0.728), (0.004, -0.738)]
     head = revolve([(r, zz) for r, zz in prof[::-1]], 22)
-    head = head.map(lambda p: np.column_stack([p[:, 0] * 0.86, p[:, 1] * 0.92 + 0.03, p[:, 2]]))
+    low = lambda p: N.smooth(-0.61, -0.45, p[:, 2])  # flat and low, so that it comes out under the shell's rim
+    head = head.map(lambda p: np.column_stack([p[:, 0] * (0.86 + 0.10 * low(p)), p[:, 1] * (0.92 - 0.37 * low(p)) + 0.03 - 0.04 * low(p), p[:, 2]]))
     tone = lambda p: N.mix(np.tile([0.40, 0.33, 0.20], (len(p.pos), 1)), np.array([0.86, 0.80, 0.58]), N.smooth(0.2, -0.5, p.nrm[:, 1]))
     skin = [coloured(head, tone)]
     eyes = [coloured(sphere(0.0135, 10, 8).at(s * 0.055, 0.052, -0.655), lambda p: np.tile([0.02, 0.02, 0.02], (len(p.pos), 1))) for s in (-1, 1)]
