@@ -15,11 +15,11 @@ constexpr double kFreeFall_m_s2 = 9.81, kDensity_kg_m3 = 1026.0, kAir_pa = 10132
 constexpr double kTension_n_m = 0.0735;
 // Deviation of the logarithm of bubbles' radii, and the most deviations from the median: breakup in
 // a turbulent burst leaves a broad lognormal spectrum, a few large caps among many small ones.
-constexpr double kBubbleSpread = 1.1, kFewest = -2.0, kMost = 2.5;
+constexpr double kBubbleSpread = 1.1, kFewest = -1.8, kMost = 2.5;
 // Bubbles of a smaller diameter slow down in proportion.
 constexpr double kSmall_m = 1.3e-3;
 // Share of a breath that breathing out takes, and the most bubbles that stand for one.
-constexpr double kOutShare = 0.40, kMostBubbles = 900.0;
+constexpr double kOutShare = 0.40, kMostBubbles = 650.0;
 // The valve gurgles: gas leaves in gulps, so many a second, each over a share of the time between.
 constexpr double kGulps_hz = 9.0, kGulpShare = 0.35;
 // A wider bubble breaks up as it rises, after so many seconds, into so many at most, which part
@@ -167,22 +167,36 @@ void add_bubbles(const scene::MotionSource& motion, const scene::BubbleSource& s
   const auto gulps = std::max(1.0, std::round(kGulps_hz * out_s));
   const auto last = static_cast<std::int64_t>(std::floor((time_s - first_s) / period_s));
   const auto breaths = static_cast<std::int64_t>(std::ceil(oldest_s / period_s));
+  // Where the source is as a gulp begins and ends, and how far off the axis the gulp goes.
+  struct Gulp {
+    Vec3 first_m, last_m;
+    Vec2 off;
+  };
+  std::vector<Gulp> places(static_cast<std::size_t>(gulps));
   std::vector<WorldParticle> parts;
+  const double share = leaks ? 1.0 : kGulpShare;
   for (std::int64_t breath = last - breaths; breath <= last; ++breath) {
     const MixedKey key(
         RandomKey{seed, kBubbleStream ^ mix64(number + 1), static_cast<std::uint64_t>(breath)});
     // A fraction of a bubble is one by chance.
     const auto n = static_cast<std::uint64_t>(std::floor(count + random_uniform(key, 0)));
+    const double breath_s = first_s + period_s * static_cast<double>(breath);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const auto place_at = [&](double gulp) {
+        return motion.world_from_object(static_cast<std::size_t>(source.object),
+                                        breath_s + out_s * gulp / gulps) *
+               source.position_m;
+      };
+      places[i] = {place_at(double(i)), place_at(double(i) + share),
+                   within_circle(key, kOfGulps + 2 * i)};
+    }
     for (std::uint64_t i = 0; i < n; ++i) {
       const std::uint64_t index = 64 * (i + 1);
       // Of a breath most leaves early, in gulps; a leak trickles.
-      double when = random_uniform(key, index), gulp = 0.0;
-      if (!leaks) {
-        when *= 0.5 + 0.5 * when;
-        gulp = std::floor(when * gulps);
-        when = (gulp + kGulpShare * (when * gulps - gulp)) / gulps;
-      }
-      const double born_s = first_s + period_s * static_cast<double>(breath) + out_s * when;
+      double when = random_uniform(key, index);
+      if (!leaks) when *= 0.5 + 0.5 * when;
+      const double gulp = std::floor(when * gulps), within = when * gulps - gulp;
+      const double born_s = breath_s + out_s * (gulp + share * within) / gulps;
       const double age_s = time_s - born_s;
       // Even the slowest is out of sight by then.
       if (age_s <= 0.0 || age_s * slowest_m_s > source.height_m) continue;
@@ -197,16 +211,14 @@ void add_bubbles(const scene::MotionSource& motion, const scene::BubbleSource& s
       const double behind_m =
           broken ? (age_s - broken_s) * bubble_speed_m_s(own_m) + kPartWidths * own_m : 0.0;
       if (rise.m - behind_m > source.height_m) continue;
-      const Vec2 alone = within_circle(key, index + 4);
-      const Vec2 together = within_circle(key, kOfGulps + 2 * static_cast<std::uint64_t>(gulp));
-      const Course course{
-          motion.world_from_object(static_cast<std::size_t>(source.object), born_s) *
-              source.position_m,
-          leaks ? alone : 0.55 * together + 0.45 * alone};
+      const Gulp& from = places[static_cast<std::size_t>(gulp)];
+      Course course{glm::mix(from.first_m, from.last_m, within), Vec2(0.0)};
       // About where it is, with room for the plume's width, its swing and its growth.
       if (sight && !sight->may_see(course.from_m + Vec3(0.0, rise.m, 0.0) - sight->origin_m(),
                                    plume_m(rise.m) + behind_m + 10.0 * own_m + kSpotRoom_m))
         continue;
+      const Vec2 alone = within_circle(key, index + 4);
+      course.off = leaks ? alone : 0.55 * from.off + 0.45 * alone;
       parts.clear();
       if (broken)
         add_parts(source, course, own_m, age_s, broken_s, burst_m_s, key, index + 8, parts);
