@@ -26,7 +26,7 @@ vec3 copper(float value) {
 // The echo at metres to starboard and ahead; negative: outside the fan.
 float echo(vec2 metres) {
   float bin = (length(metres) - c.range_min_m) * c.bins_per_m;
-  if (bin < 0.0 || bin >= float(c.n_range)) return -1.0;
+  if (bin < 0.0 || bin >= c.n_range) return -1.0;
   const float kTurn = 6.28318530718;
   float off = atan(metres.x, metres.y) - c.azimuth_middle_rad;
   off -= kTurn * round(off / kTurn);

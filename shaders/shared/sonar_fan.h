@@ -9,7 +9,7 @@ NERITIC_SHARED_BEGIN
 struct SonarFanPush {
   uint width;  // of the picture, pixels
   uint height;
-  uint n_range;
+  float n_range;  // of the rows, that lie in the part of the range that is shown
   uint n_azimuth;
   float left_m;  // of the picture's left edge, starboard positive
   float top_m;   // of its upper edge, ahead positive

@@ -18,19 +18,20 @@ constexpr std::uint32_t groups(std::uint32_t pixels) {
   return (pixels + shared::kSonarFanGroup - 1) / shared::kSonarFanGroup;
 }
 
-shared::SonarFanPush push_of(const FanShape& shape, const sonar::BeamGrid& grid, bool is_power,
-                             double gain) {
+// grid: of all rows, but with the limits that are shown; part: of the rows, that they are.
+shared::SonarFanPush push_of(const FanShape& shape, const sonar::BeamGrid& grid, double part,
+                             bool is_power, double gain) {
   const sonar::Limits& l = grid.limits;
   const double half = (l.azimuth_max_rad - l.azimuth_min_rad) / 2.0;
   return {.width = shape.width,
           .height = shape.height,
-          .n_range = grid.bins.range,
+          .n_range = static_cast<float>(part * grid.bins.range),
           .n_azimuth = grid.bins.azimuth,
           .left_m = static_cast<float>(shape.left_m),
           .top_m = static_cast<float>(shape.top_m),
           .m_per_px = static_cast<float>(shape.m_per_px),
           .range_min_m = static_cast<float>(l.range_min_m),
-          .bins_per_m = static_cast<float>(1.0 / grid.range_step_m()),
+          .bins_per_m = static_cast<float>(part / grid.range_step_m()),
           .azimuth_middle_rad = static_cast<float>((l.azimuth_min_rad + l.azimuth_max_rad) / 2.0),
           .azimuth_half_rad = static_cast<float>(half),
           .bins_per_rad = static_cast<float>(1.0 / grid.azimuth_step_rad()),
@@ -96,14 +97,14 @@ void SonarFans::show(double gain, double range_part) {
 }
 
 // The shape and the picture for the part of the range that is shown.
-Status SonarFans::shape_fan(Fan& fan, const std::string& name, const sonar::BeamGrid& grid) {
+Status SonarFans::shape_fan(Fan& fan) {
   if (fan.picture) device_.wait_idle();  // a frame in flight may show it; ranges change seldom
-  fan.grid = grid;
   fan.range_part = range_part_;
   sonar::Limits& shown = fan.grid.limits;
+  shown = fan.limits;
   shown.range_max_m = glm::mix(shown.range_min_m, shown.range_max_m, range_part_);
   fan.shape = fan_shape(shown, kLongestSide_px);
-  NERITIC_TRY(fan.picture, gpu::Image::create(device_, {.name = name + " fan",
+  NERITIC_TRY(fan.picture, gpu::Image::create(device_, {.name = fan.name + " fan",
                                                         .format = VK_FORMAT_R8G8B8A8_UNORM,
                                                         .width = fan.shape.width,
                                                         .height = fan.shape.height,
@@ -118,11 +119,21 @@ Result<SonarFans::Fan*> SonarFans::fan_of(std::size_t sonar, const std::string& 
                                           const sonar::BeamGrid& grid) {
   std::unique_ptr<Fan>& slot = fans_[sonar];
   if (slot) {
-    if (slot->range_part != range_part_) NERITIC_TRY_STATUS(shape_fan(*slot, name, grid));
+    if (slot->range_part != range_part_) NERITIC_TRY_STATUS(shape_fan(*slot));
     return slot.get();
   }
   auto fan = std::make_unique<Fan>();
-  NERITIC_TRY_STATUS(shape_fan(*fan, name, grid));
+  fan->name = name;
+  fan->grid = grid;
+  fan->limits = grid.limits;
+  NERITIC_TRY_STATUS(shape_fan(*fan));
+  NERITIC_TRY(
+      fan->sums,
+      gpu::Buffer::create(
+          device_,
+          {.name = name + " fan sums",
+           .size = std::size_t{grid.bins.range} * grid.bins.azimuth * sizeof(std::uint32_t),
+           .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT}));
   NERITIC_TRY(fan->scale,
               gpu::Buffer::create(device_, {.name = name + " fan scale",
                                             .size = sizeof(float),
@@ -169,28 +180,69 @@ void SonarFans::begin_frame() {
   for (auto& [sonar, fan] : fans_) fan->drawn = {};
 }
 
+// The sums of the newest ping, in a buffer that stays.
+graph::BufferHandle SonarFans::declare_sums(graph::FrameGraph& graph,
+                                            const SensorFrame::Sonar& ping, Fan& fan) {
+  const graph::BufferHandle kept = graph.import_buffer(fan.name + " fan sums", fan.sums);
+  struct Data {
+    graph::BufferHandle from, to;
+  };
+  return graph
+      .add_pass<Data>(
+          fan.name + " fan sums",
+          [&](graph::PassBuilder& builder, Data& data) {
+            data.from = ping.image;
+            builder.read(ping.image, graph::Access::kTransferRead);
+            data.to = builder.write(kept, graph::Access::kTransferWrite);
+          },
+          [bytes = fan.sums.size()](const Data& data, graph::PassContext& context) {
+            const VkBufferCopy region{0, 0, bytes};
+            vkCmdCopyBuffer(context.commands.handle(), context.buffer(data.from).handle(),
+                            context.buffer(data.to).handle(), 1, &region);
+          })
+      .to;
+}
+
 Status SonarFans::declare(graph::FrameGraph& graph, const std::string& name,
                           const SensorFrame::Sonar& ping) {
   NERITIC_TRY(Fan* const fan, fan_of(ping.index, name, ping.grid));
-  const graph::BufferHandle scale = declare_scale(graph, name, ping, *fan);
+  fan->is_power = ping.is_float;
+  declare_picture(graph, *fan, declare_sums(graph, ping, *fan),
+                  declare_scale(graph, name, ping, *fan));
+  return {};
+}
+
+Status SonarFans::redraw(graph::FrameGraph& graph) {
+  for (auto& [sonar, fan] : fans_) {
+    if (fan->drawn || (fan->gain == gain_ && fan->range_part == range_part_)) continue;
+    if (fan->range_part != range_part_) NERITIC_TRY_STATUS(shape_fan(*fan));
+    declare_picture(graph, *fan, graph.import_buffer(fan->name + " fan sums", fan->sums),
+                    graph.import_buffer(fan->name + " fan scale", fan->scale));
+  }
+  return {};
+}
+
+void SonarFans::declare_picture(graph::FrameGraph& graph, Fan& fan, graph::BufferHandle sums,
+                                graph::BufferHandle scale) {
+  fan.gain = gain_;
   // Every texel is written: what was there need not be kept.
-  const graph::ImageHandle picture = graph.import_image(fan->picture, {});
+  const graph::ImageHandle picture = graph.import_image(fan.picture, {});
   struct Data {
     graph::BufferHandle sums, scale;
     graph::ImageHandle picture;
   };
-  fan->drawn =
+  fan.drawn =
       graph
           .add_pass<Data>(
-              name + " fan",
+              fan.name + " fan",
               [&](graph::PassBuilder& builder, Data& data) {
-                data.sums = ping.image;
+                data.sums = sums;
                 data.scale = scale;
-                builder.read(ping.image, graph::Access::kStorageReadCompute);
+                builder.read(sums, graph::Access::kStorageReadCompute);
                 builder.read(scale, graph::Access::kStorageReadCompute);
                 data.picture = builder.write(picture, graph::Access::kStorageWriteCompute);
               },
-              [this, push = push_of(fan->shape, ping.grid, ping.is_float, gain_)](
+              [this, push = push_of(fan.shape, fan.grid, fan.range_part, fan.is_power, gain_)](
                   const Data& data, graph::PassContext& context) {
                 gpu::Commands& commands = context.commands;
                 commands.bind_pipeline(draw_);
@@ -204,8 +256,7 @@ Status SonarFans::declare(graph::FrameGraph& graph, const std::string& name,
                 commands.dispatch(groups(push.width), groups(push.height));
               })
           .picture;
-  graph.output(fan->drawn, graph::Access::kSampledFragment);
-  return {};
+  graph.output(fan.drawn, graph::Access::kSampledFragment);
 }
 
 graph::ImageHandle SonarFans::picture(graph::FrameGraph& graph, std::size_t sonar) {

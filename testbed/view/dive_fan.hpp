@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <string>
 
 #include "engine/gpu/device.hpp"
 #include "engine/gpu/pipeline.hpp"
@@ -26,12 +27,16 @@ FanShape fan_shape(const sonar::Limits& limits, std::uint32_t longest_side_px);
 class SonarFans {
  public:
   static Result<std::unique_ptr<SonarFans>> create(gpu::Device& device);
-  // From the next ping on: amplitudes times the gain, and the near part of the range alone.
+  // Amplitudes times the gain, and the near part of the range alone: of the next ping, or of the
+  // newest one at once (redraw).
   void show(double gain, double range_part);
   // A new graph: handles of the last are forgotten.
   void begin_frame();
   // Declares the passes that draw a ping. name: the sonar's, unique in the scene.
   Status declare(graph::FrameGraph& graph, const std::string& name, const SensorFrame::Sonar& ping);
+  // Draws the newest pings again that were drawn as was asked for before, as while time stands
+  // still.
+  Status redraw(graph::FrameGraph& graph);
   // The newest picture for this frame's passes to read (kSampledFragment); empty before the first.
   graph::ImageHandle picture(graph::FrameGraph& graph, std::size_t sonar);
   const FanShape* shape(std::size_t sonar) const;        // nullptr before the first
@@ -41,16 +46,24 @@ class SonarFans {
   struct Fan {
     FanShape shape;
     sonar::BeamGrid grid;  // limits: those that are shown
-    double range_part = 1.0;
+    sonar::Limits limits;  // of the sonar itself
+    double gain = 1.0, range_part = 1.0;
+    std::string name;
+    bool is_power = false;
     gpu::Image picture;
     gpu::Buffer scale;         // one float
+    gpu::Buffer sums;          // of the newest ping, kept
     graph::ImageHandle drawn;  // in this frame's graph; empty where an earlier frame drew it
   };
   explicit SonarFans(gpu::Device& device) : device_(device) {}
-  Status shape_fan(Fan& fan, const std::string& name, const sonar::BeamGrid& grid);
+  Status shape_fan(Fan& fan);
   Result<Fan*> fan_of(std::size_t sonar, const std::string& name, const sonar::BeamGrid& grid);
   graph::BufferHandle declare_scale(graph::FrameGraph& graph, const std::string& name,
                                     const SensorFrame::Sonar& ping, const Fan& fan);
+  static graph::BufferHandle declare_sums(graph::FrameGraph& graph, const SensorFrame::Sonar& ping,
+                                          Fan& fan);
+  void declare_picture(graph::FrameGraph& graph, Fan& fan, graph::BufferHandle sums,
+                       graph::BufferHandle scale);
   gpu::Device& device_;
   gpu::Pipeline scale_, draw_;
   double gain_ = 1.0, range_part_ = 1.0;
