@@ -37,5 +37,19 @@ class Gaps(unittest.TestCase):
             self.assertLess(wide, 4.0)
 
 
+class Legend(unittest.TestCase):
+    def test_no_entry_is_left_out_however_little_room_there_is(self):
+        for count, wide in ((2, 400), (6, 400), (6, 220), (12, 800)):
+            fig = style.figure(900, 400)
+            ax = style.area(fig, 70, 60, 70 + wide, 320)
+            for i in range(count):
+                ax.plot([0, 1], [0, i], label=f"shark_range_m {i}, delay_s 0.5")
+            style.title(ax, "Distance of the ROV from the line")
+            style.legend(ax)
+            self.assertEqual(len(ax.get_legend().get_texts()), count)
+            box = ax.get_legend().get_window_extent()
+            self.assertLessEqual(box.width, max(wide + 6, 230))
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -71,9 +71,11 @@ def _times(runs):
 
 def _distances(ax, groups, style):
     for i, (name, runs) in enumerate(groups):
-        for k, r in enumerate([r for r in runs if r["series"]][:30]):
+        for k, r in enumerate([r for r in runs if r["series"].get("t")][:30]):
             ax.plot(r["series"]["t"], r["series"]["beside"], color=style.color(i), lw=0.8, alpha=0.6, ls=LINES[i],
                     label=name if k == 0 else None)
+    if not any(r["series"].get("t") for _, runs in groups for r in runs):
+        ax.text(0.5, 0.5, "no run began: nothing met the shark", transform=ax.transAxes, ha="center", va="center", color=style.INK, size=9)
     ax.axhline(BESIDE_M, color=style.INK, lw=0.9, ls="--")
     ax.set_xlabel("time since the gaze met the shark, s")
     ax.set_ylabel("beside the line, m")
@@ -90,6 +92,8 @@ def _shares(ax, groups, style):
     ax.set_ylim(0, 1.03)
     ax.set_xlabel("time to block, s")
     style.title(ax, "Share of the runs that blocked by then")
+    if not any(_times(runs) for _, runs in groups):
+        ax.text(0.5, 0.5, "no run blocked", transform=ax.transAxes, ha="center", va="center", color=style.INK, size=9)
 
 
 def _power(ax, groups, spread, style):

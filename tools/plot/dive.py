@@ -156,7 +156,7 @@ def danger_strips(data):
 
 
 def draw_strips(ax, strips, seconds):
-    """One row a danger, under the depth; its words stand beside its first or last time if there is room."""
+    """One row a danger, under the depth; its words stand beside its first or last time if there is room, else on it."""
     time_axis(ax, seconds, False)
     ax.set_ylim(0, len(strips))
     ax.set_yticks([])
@@ -178,6 +178,8 @@ def draw_strips(ax, strips, seconds):
             text.set_x(last + 4 * pixel)
         elif begins > wide + 8 * pixel:
             text.set_x(begins - wide - 4 * pixel)
+        else:  # on the bar itself, where its own colour would not be read
+            text.set_color(INK)
 
 
 def draw_map(fig, ax, data, seconds):

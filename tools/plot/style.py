@@ -85,21 +85,30 @@ def title(ax, words, size=9.5):
 
 
 def legend(ax, size=8, handles=None, handle=1.4):
-    """On the title's line, from the right; below one entry it says nothing and is left out."""
+    """On the title's line, from the right. What has no room there stands in columns within the panel, where it hides least:
+    no entry is left out."""
     handles = handles if handles is not None else ax.get_legend_handles_labels()[0]
     handles = [h for h in handles if not h.get_label().startswith("_")]
-    title_right = ax._left_title.get_window_extent().x1
-    while handles:
-        made = ax.legend(handles=handles, loc="lower right", bbox_to_anchor=(1.005, 1.0), ncol=len(handles),
-                         frameon=False, fontsize=size, handlelength=handle, columnspacing=0.8, handletextpad=0.5,
-                         borderpad=0.1, borderaxespad=0.15, labelspacing=0.15)
+    if not handles:
+        return
+    looks = {"handles": handles, "handlelength": handle, "columnspacing": 0.8, "handletextpad": 0.5, "borderpad": 0.1,
+             "labelspacing": 0.15}
+    title_right, wanted = ax._left_title.get_window_extent().x1, size
+    while size >= min(7, wanted):
+        made = ax.legend(loc="lower right", bbox_to_anchor=(1.005, 1.0), ncol=len(handles), frameon=False, fontsize=size,
+                         borderaxespad=0.15, **looks)
         if made.get_window_extent().x0 > title_right + 6:
             return
         made.remove()
-        if size > 7:
-            size -= 0.5
-        else:
-            handles = handles[:-1]
+        size -= 0.5
+    room = ax.get_window_extent().width - 8
+    for columns in range(len(handles), 0, -1):
+        made = ax.legend(loc="best", ncol=columns, frameon=True, framealpha=0.8, edgecolor="none", fontsize=min(7.5, wanted),
+                         borderaxespad=0.4, **looks)
+        made.set_zorder(30)
+        if made.get_window_extent().width <= room or columns == 1:
+            return
+        made.remove()
 
 
 def plain_log(axis):
