@@ -284,8 +284,8 @@ def run(asked, screen):
 def _block(asked, place, block, turn):
     """The block's program; {record} becomes a file of the participant's folder, numbered so that no try replaces another."""
     tries = 1
-    while os.path.exists(os.path.join(place, f"{block['name']}_{tries}.mcap")) or \
-            os.path.exists(os.path.join(place, f"{block['name']}_{tries}")):
+    # A recording that a crash cut off stays as .mcap.part, under a number of its own.
+    while any(os.path.exists(os.path.join(place, f"{block['name']}_{tries}{end}")) for end in ("", ".mcap", ".mcap.part", ".log")):
         tries += 1
     record = os.path.join(place, f"{block['name']}_{tries}")
     port, listens = str(_free_port()), os.path.join(place, PORT)
@@ -294,15 +294,21 @@ def _block(asked, place, block, turn):
     if any("{markers}" in w for w in block.get("command", [])):
         write_file(listens, port)
         threading.Thread(target=_send_once_heard, args=(begins, int(port), ended), daemon=True).start()
+    status = 0
     try:
-        status = subprocess.run([asked.program, *words]).returncode if words else 0
+        if words:  # what the program tells is for the experimenter, not for the participant at the terminal
+            with open(record + ".log", "w", encoding="utf-8") as told:
+                status = subprocess.run([asked.program, *words], stdout=told, stderr=subprocess.STDOUT).returncode
     finally:
         ended.set()
         if os.path.exists(listens):
             os.remove(listens)
     note(place, marker="block ends", block=block["name"], turn=turn, attempt=tries, status=status)
     if status != 0:
-        raise Failed(f"study: block {block['name']} ended with status {status}; `neritic study run` begins it anew")
+        with open(record + ".log", encoding="utf-8", errors="replace") as told:
+            last = told.read().strip().splitlines()[-1:]
+        raise Failed(f"study: block {block['name']} ended with status {status} ({last[0] if last else 'it told nothing'}; all of it: "
+                     f"{record}.log); `neritic study run` begins it anew")
 
 
 def withdraw(asked, screen):
