@@ -101,6 +101,15 @@ def _condition_table(scenario, condition):
     return f"<h3>{html.escape(words(condition['condition']))}</h3>{failures}<table>{''.join(rows)}</table>"
 
 
+def setting(summary, name):
+    """Its value; of a factor all levels, of one that is drawn its range."""
+    if name in summary["factors"]:
+        return " / ".join(number(v) for v in summary["factors"][name])
+    if name in summary["vary"]:
+        return " to ".join(number(v) for v in summary["vary"][name])
+    return number(summary["settings"][name])
+
+
 def page(scenario, summary, pictures, results=()):
     parts = [f"<!DOCTYPE html><html lang=\"en\"><meta charset=\"utf-8\"><title>{html.escape(scenario.title)}</title>"
              f"<style>{STYLE}</style><h1>{html.escape(scenario.title)}</h1>",
@@ -115,8 +124,8 @@ def page(scenario, summary, pictures, results=()):
     parts += [_condition_table(scenario, c) for c in summary["conditions"]]
     meanings = "".join(f"<tr><td>{k}</td><td style=\"text-align:left\">{html.escape(v[1])}</td></tr>"
                        for k, v in scenario.kind.MEASURES.items())
-    settings = "".join(f"<tr><td>{k}</td><td>{number(v)}</td><td style=\"text-align:left\">"
-                       f"{html.escape(scenario.kind.SETTINGS[k].meaning)}</td></tr>" for k, v in summary["settings"].items())
+    settings = "".join(f"<tr><td>{k}</td><td>{html.escape(setting(summary, k))}</td><td style=\"text-align:left\">"
+                       f"{html.escape(scenario.kind.SETTINGS[k].meaning)}</td></tr>" for k in summary["settings"])
     parts.append(f"<h2>Measures</h2><table>{meanings}</table><h2>Settings</h2><table>{settings}</table></html>")
     return "\n".join(parts)
 
