@@ -42,7 +42,7 @@ void draw_curve(ImDrawList& list, const RunNumbers& numbers, const RunNumber& nu
   const auto at = [&](std::size_t i, float value) {
     float up = span.high > span.low ? (value - span.low) / room : 0.5f;
     if (number.down) up = 1.0f - up;
-    const float age = static_cast<float>(numbers.count() - 1 - i) / (kNumbersKept - 1);
+    const auto age = static_cast<float>(numbers.age_s(i) / kNumbersShown_s);
     return ImVec2(from.x + size.x * (1.0f - age), from.y + size.y * (0.94f - 0.88f * up));
   };
   for (std::size_t i = 0; i <= numbers.count(); ++i) {

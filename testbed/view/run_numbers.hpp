@@ -1,5 +1,6 @@
 // The numbers of a run over its last two minutes, for an operator's graphs: of each vehicle and
-// diver that moves by physics, and of the frames. Four values a second. Rendering thread.
+// diver that moves by physics, and of the frames. Up to four values a second of the scene, and no
+// more than one a picture: each keeps its time. Rendering thread.
 #pragma once
 
 #include <string>
@@ -11,7 +12,8 @@
 namespace neritic::testbed {
 
 inline constexpr double kNumbers_hz = 4.0;
-inline constexpr std::size_t kNumbersKept = 480;
+inline constexpr double kNumbersShown_s = 120.0;
+inline constexpr auto kNumbersKept = static_cast<std::size_t>(kNumbersShown_s * kNumbers_hz);
 
 struct RunNumber {
   std::string name, unit;   // "diver depth", "m"
@@ -31,6 +33,8 @@ class RunNumbers {
   float at(const RunNumber& number, std::size_t i) const {
     return number.kept[(first_ + i) % kNumbersKept];
   }
+  // How long before the newest the i-th was, in the scene's time.
+  double age_s(std::size_t i) const { return looked_s_ - times_s_[(first_ + i) % kNumbersKept]; }
 
  private:
   void add(const std::string& name, const char* unit, double value, bool down = false);
@@ -39,6 +43,7 @@ class RunNumbers {
   std::vector<RunNumber> all_;
   std::size_t next_ = 0;               // of all_, while a look adds
   std::size_t first_ = 0, count_ = 0;  // of the rings
+  std::vector<double> times_s_ = std::vector<double>(kNumbersKept);
   double looked_s_ = -1e9;
 };
 
