@@ -114,6 +114,13 @@ void draw_map(const std::vector<MapMark>& marks, const MapMark& eye, const MapTr
   const ImVec2 grid_size = ImGui::CalcTextSize(grid.c_str());
   std::vector<PanelRect> labels{
       {from.x + 4.0f * scale, to.y - grid_size.y - 2.0f * scale, grid_size.x, grid_size.y}};
+  // No label lies on a dart, which a label's own is beside.
+  const auto keep_free = [&](const MapMark& mark, float half) {
+    if (!on_a_map(mark.position_m)) return;
+    const ImVec2 at = place(east_north(mark.position_m));
+    labels.push_back({at.x - half, at.y - half, 2.0f * half, 2.0f * half});
+  };
+  for (const MapMark& mark : marks) keep_free(mark, 7.8f * scale);
   draw_dart(list, place(east_north(eye.position_m)), eye.course_rad, 5.0f * scale, kFaint);
   for (const MapMark& mark : marks) {
     for (const Vec2& p : trails.of(mark.name)) list.PathLineTo(place(p));
