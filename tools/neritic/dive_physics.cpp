@@ -106,7 +106,8 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,
        .stop = {.frames = steps_in(seconds, step_s),
                 .interrupted = [&] { return interrupt.requested(); }}});
   const Status status = loop.run();
-  // A run that failed prints its summary too.
+  // A run that failed prints its summary too, but a replay that did not begin has none.
+  if (replay && !status.ok() && replay->check.equal_steps() == 0) return status;
   if (replay && !flags.quiet && !flags.json) replay->tell();
   print_summary(
       flags, world, physics->simulation(), files.recorder(),
