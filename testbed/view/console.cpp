@@ -20,6 +20,14 @@ std::string pace_words(sim::RunClock* clock) {
   return clock->speed() == 1.0 ? std::string() : fmt::format("{:g} x speed", clock->speed());
 }
 
+// How far a picture may be ahead of the newest state in time that runs fast: one of slow pictures
+// is shown half a second of the host after its state.
+double usual_lag_s(sim::RunClock* clock) {
+  constexpr double kSlowPicture_s = 0.5;
+  const double speed = clock ? clock->speed() : 1.0;
+  return speed > 1.0 ? kSlowPicture_s * speed : 0.0;
+}
+
 // A panel that covers the group's first view, texel on pixel.
 xr::PanelLayer screen_panel(const xr::ViewGroup& group, graph::ImageHandle image,
                             std::vector<xr::PanelPart> drawn) {
@@ -42,7 +50,7 @@ Console::Console(Session& session, xr::Overlay& overlay, const ConsoleOptions& o
       participants_(participants_of(session.scene())) {
   std::erase_if(participants_, [](const Participant& one) { return !has_body(one); });
   const ViewMemory& memory = options_.memory;
-  show_panels_ = memory.panels, show_times_ = memory.times;
+  show_panels_ = memory.panels && options_.task.empty(), show_times_ = memory.times;
   show_map_ = memory.map, show_graphs_ = memory.graphs;
   graphs_.names = memory.numbers;
   gain_db_ = memory.sonar_gain_db, range_part_ = memory.sonar_range_part;
@@ -109,11 +117,16 @@ void Console::look(const scene::MotionSource& motion, double time_s, const DiveP
   rows_.clear();
   marks_.clear();
   for (const Participant& one : participants_) {
-    const scene::MotionAt seen = motion.at(one.mount, time_s);
+    scene::MotionAt seen = motion.at(one.mount, time_s);
+    const double behind_s = seen.predicted_s;
+    const bool held = seen.known == scene::Knowledge::kHeld && behind_s > 0.0;
+    // Beyond what is predicted nothing moves: the newest state says how it does.
+    if (held) seen = motion.at(one.mount, time_s - behind_s);
     const Motion& at = seen.motion;
-    std::string doing = pilot.doing(static_cast<std::size_t>(one.mount.object));
-    if (seen.known == scene::Knowledge::kHeld && seen.predicted_s > 0.0)
-      doing += fmt::format("{}no state for {:.1f} s", doing.empty() ? "" : ", ", seen.predicted_s);
+    std::string doing = pilot.doing(static_cast<std::size_t>(one.mount.object), options_.units);
+    // In fast time the picture's time is ahead of the newest state by so much.
+    if (held && behind_s > usual_lag_s(options_.clock))
+      doing += fmt::format("{}no state for {:.1f} s", doing.empty() ? "" : ", ", behind_s);
     rows_.push_back({one.name, std::move(doing), -at.pose.position_m.y,
                      glm::length(at.velocity_m_s), glm::distance(at.pose.position_m, eye_m)});
     marks_.push_back({one.name, at.pose.position_m, -course_of(at.pose.rotation)});
@@ -133,7 +146,7 @@ Status Console::declare_sonars(graph::FrameGraph& graph, const SensorFrame& fram
       graph.output(ping.image, graph::Access::kStorageReadCompute);
     }
   }
-  return {};
+  return fans_->redraw(graph);
 }
 
 // "REC 1:07  FILE"; empty: nothing is recorded.
@@ -152,7 +165,7 @@ PanelFacts Console::facts(graph::FrameGraph& graph, const ConsoleFrame& frame) {
                    .pace = pace_words(options_.clock),
                    .width = frame.group.width,
                    .height = frame.group.height,
-                   .given_up = given_up(frame.quality),
+                   .given_up = given_up(frame.quality, !options_.sonars.empty()),
                    .time_s = frame.time_s,
                    .speed_m_s = frame.choice.eye().speed_m_s(),
                    .participants = rows_,
@@ -166,15 +179,28 @@ PanelFacts Console::facts(graph::FrameGraph& graph, const ConsoleFrame& frame) {
     if (!picture) continue;
     facts.sonars.push_back({scene.sonars[index].name, overlay_.texture(picture),
                             *fans_->shape(index), *fans_->grid(index),
-                            scene.sonars[index].rate_hz});
+                            scene.sonars[index].rate_hz / frame.quality.ping_every});
   }
   return facts;
+}
+
+// Of the participant that carries the view or is chased; of a free view its own.
+Readout Console::readout(const ConsoleFrame& frame) const {
+  const FreeCamera& eye = frame.choice.eye();
+  Readout out{"camera", -eye.position_m().y, radians(eye.heading_deg()), 2};
+  for (std::size_t i = 0; i < participants_.size() && i < marks_.size(); ++i)
+    if (frame.choice.carrier() >= 0 &&
+        carrier_of(session_.scene(), participants_[i].mount) == frame.choice.carrier())
+      return {marks_[i].name, rows_[i].depth_m, marks_[i].course_rad, 1};
+  return out;
 }
 
 // Panels that the user asked for, or that steering needs.
 void Console::add_on_demand(graph::FrameGraph&, const ConsoleFrame& frame, PanelFacts& facts) {
   facts.sonar_gain_db = gain_db_;
   facts.marks = marks_;
+  facts.units = options_.units;
+  facts.readout = readout(frame);
   facts.eye = {"", frame.choice.eye().position_m(), radians(frame.choice.eye().heading_deg())};
   if (frame.inset && inset_) {
     const scene::Camera& camera = session_.scene().cameras[*inset_];
@@ -241,18 +267,23 @@ void Console::draw(graph::FrameGraph& graph, const ConsoleFrame& frame) {
     PanelFacts facts = this->facts(graph, frame);
     add_on_demand(graph, frame, facts);
     const bool graphs = show_graphs_ && options_.physics;
-    draw_panels(facts, frame.choice.eye(),
+    draw_panels(facts,
                 {.first_sonar = first_sonar_,
                  .frames = &frame.times,
                  .device = show_times_ ? session_.device().info().name : "",
-                 .hint = noted ? note_ : "F1  keys   V  view",
+                 .hint = noted                   ? note_
+                         : options_.task.empty() ? "F1  keys   V  view"
+                                                 : options_.task,
                  .trails = show_map_ ? &trails_ : nullptr,
                  .numbers = graphs ? &numbers_ : nullptr,
                  .taken = frame.taken,
                  .graphs = graphs ? &graphs_ : nullptr},
                 now, scale);
   } else {
-    if (noted) draw_hint(note_, scale);
+    if (noted)
+      draw_hint(note_, scale);
+    else if (!options_.task.empty())
+      draw_task(options_.task, scale);
     if (const std::string light = recording(); !light.empty()) draw_recording_light(light, scale);
   }
 }
@@ -264,7 +295,7 @@ Result<std::optional<xr::PanelLayer>> Console::declare(graph::FrameGraph& graph,
   look_at_cursor();
   const TimeNs now = now_ns();
   const bool noted = now < note_until_ns_ || (picked_ && now < picked_until_ns_);
-  if (!show_panels_ && !help_page_ && !noted && recording().empty())
+  if (!show_panels_ && !help_page_ && !noted && options_.task.empty() && recording().empty())
     return std::optional<xr::PanelLayer>();
   draw(graph, frame);
   draw_mark(now, overlay_.scale(), frame.taken);

@@ -36,6 +36,8 @@ struct ConsoleOptions {
   LivePhysics* physics = nullptr;    // whose numbers are drawn; nullptr: nothing moves by physics
   ViewMemory memory;                 // as the last window looked
   const Devices* devices = nullptr;  // of the run
+  hud::Units units = hud::Units::kMetric;
+  std::string task;  // for the person; the panels are off until they are asked for
 };
 
 // State of the view in this frame.
@@ -84,6 +86,7 @@ class Console {
   Console(Session& session, xr::Overlay& overlay, const ConsoleOptions& options);
   PanelFacts facts(graph::FrameGraph& graph, const ConsoleFrame& frame);
   std::string recording() const;
+  Readout readout(const ConsoleFrame& frame) const;
   void draw(graph::FrameGraph& graph, const ConsoleFrame& frame);
   void add_on_demand(graph::FrameGraph& graph, const ConsoleFrame& frame, PanelFacts& facts);
   void draw_mark(TimeNs now_ns, float scale, std::span<const PanelRect> instruments) const;

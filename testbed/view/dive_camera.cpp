@@ -71,6 +71,10 @@ void FreeCamera::update(const DiveInput& input, double elapsed_s) {
   position_m_ += direction / std::max(length, 1.0) * (speed_m_s * step_s);
 }
 
+void FreeCamera::turn(double to_starboard_rad) {
+  yaw_rad_ = std::remainder(yaw_rad_ - to_starboard_rad, 2.0 * kPi);
+}
+
 Pose FreeCamera::world_from_view() const {
   return {position_m_, from_yaw_pitch_roll(yaw_rad_, pitch_rad_, 0.0)};
 }

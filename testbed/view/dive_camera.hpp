@@ -21,6 +21,8 @@ class FreeCamera {
   // Moves and turns by the controls, which were held for that long.
   void update(const DiveInput& input, double elapsed_s);
 
+  void turn(double to_starboard_rad);
+
   Pose world_from_view() const;
   const Vec3& position_m() const { return position_m_; }
   double speed_m_s() const { return speed_m_s_; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "engine/draw2d/axes.hpp"
@@ -75,7 +76,9 @@ void draw_rings(ImDrawList& list, const SonarPanel& panel, ImVec2 corner, ImVec2
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     if (last && std::abs(last->y - edge.y) < size.y && std::abs(last->x - edge.x) < size.x + 4.0f)
       return;
-    list.AddText(ImVec2(edge.x + 4.0f, edge.y - 2.0f), kInk, text.c_str());
+    // Within the panel, rather over the arc's end than cut.
+    const float most = ImGui::GetWindowPos().x + ImGui::GetWindowWidth() - size.x - 4.0f;
+    list.AddText(ImVec2(std::min(edge.x + 4.0f, most), edge.y - 2.0f), kInk, text.c_str());
     last = edge;
   };
   arc(l.range_max_m, kRim);
@@ -161,33 +164,40 @@ void timings_table(const DiveTimes& times, TimeNs now_ns, float scale) {
   ImGui::EndTable();
 }
 
-// At the lower edge of its place, as wide as its text.
-void draw_hint(const std::string& text, float scale, const PanelRect& rect) {
-  ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+// At the lower edge of its place, as wide as its text. Words that are wider than the place go on in
+// more lines upwards, over what lies there.
+void draw_hint(const std::string& text, float scale, const PanelRect& rect, float letters = 1.0f) {
   const float x = rect.x * scale, bottom = rect.bottom() * scale, pad = 8.0f * scale;
+  const float most =
+      rect.width > 0.0f ? rect.width * scale : ImGui::GetIO().DisplaySize.x - x - kEdge_px * scale;
+  const float room = std::max(1.0f, most - 2.0f * pad);
+  const float font_px = letters * ImGui::GetFontSize();
+  const ImVec2 size = ImGui::GetFont()->CalcTextSizeA(font_px, std::numeric_limits<float>::max(),
+                                                      room, text.c_str());
   const float top = bottom - size.y - pad;
-  const float most = rect.width > 0.0f ? rect.width * scale : ImGui::GetIO().DisplaySize.x - x;
+  const bool wrapped = size.y > 1.5f * font_px;
+  ImDrawList& list = wrapped ? *ImGui::GetForegroundDrawList() : *ImGui::GetBackgroundDrawList();
   list.AddRectFilled(ImVec2(x, top), ImVec2(x + std::min(size.x + 2.0f * pad, most), bottom),
-                     kPaper, 4.0f * scale);
-  list.PushClipRect(ImVec2(x, top), ImVec2(x + most, bottom));
-  list.AddText(ImVec2(x + pad, top + 0.5f * pad), kInk, text.c_str());
-  list.PopClipRect();
+                     wrapped ? kSolidPaper : kPaper, 4.0f * scale);
+  list.AddText(ImGui::GetFont(), font_px, ImVec2(x + pad, top + 0.5f * pad), kInk, text.c_str(),
+               nullptr, room);
 }
 
-void draw_readout(const FreeCamera& camera, const PanelRect& rect, float scale) {
+void draw_readout(const PanelFacts& facts, const PanelRect& rect, float scale) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const float half = 0.5f * rect.width * scale, x = rect.x * scale + half, y = rect.y * scale;
-  draw_card(list, camera.heading_deg(), x, y, half, scale);
-  const double depth_m = -camera.position_m().y;
-  const std::string heading =
-      fmt::format("heading {}\u00b0", hud::heading_text(radians(camera.heading_deg())).view());
-  const std::string text =
-      depth_m >= 0.0 ? fmt::format("depth {:>7}    {}", metres_text(depth_m, 2), heading)
-                     : fmt::format("{} above water    {}", metres_text(-depth_m, 2), heading);
+  const double heading_deg = std::fmod(degrees(facts.readout.heading_rad) + 720.0, 360.0);
+  draw_card(list, heading_deg, x, y, half, scale);
+  std::string text = readout_words(facts.readout, facts.units);
+  if (ImGui::CalcTextSize(text.c_str()).x > 2.0f * half - 8.0f * scale)
+    text = text.substr(facts.readout.whose.size() + 2);
   const float top = y + 34.0f * scale, height = 28.0f * scale;
   list.AddRectFilled(ImVec2(x - half, top), ImVec2(x + half, top + height), kPaper, 4.0f * scale);
   centered_text(list, x, top + 0.5f * (height - ImGui::GetTextLineHeight()), kInk, text);
+}
+
+std::string doing_words(const ParticipantRow& row) {
+  return fmt::format("{}: {}", row.name, row.doing);
 }
 
 void participants_table(const PanelFacts& facts, float scale) {
@@ -196,23 +206,24 @@ void participants_table(const PanelFacts& facts, float scale) {
   for (const char* column : {"depth", "speed", "away"})
     ImGui::TableSetupColumn(column, ImGuiTableColumnFlags_WidthFixed, 62.0f * scale);
   ImGui::TableNextRow();
-  for (const char* heading : {"participant", "depth", "speed", "away"}) {
+  for (const char* heading : {"name", "depth", "speed", "away"}) {
     ImGui::TableNextColumn();
     ImGui::TextDisabled("%s", heading);
   }
   for (const ParticipantRow& row : facts.participants) {
     ImGui::TableNextRow();
     for (const std::string& cell :
-         {row.name, metres_text(row.depth_m, 1), fmt::format("{:.2f} m/s", row.speed_m_s),
-          metres_text(row.away_m, 1)}) {
+         {row.name, length_text(row.depth_m, 1, facts.units),
+          speed_text(row.speed_m_s, facts.units), length_text(row.away_m, 1, facts.units)}) {
       ImGui::TableNextColumn();
       text_line(cell);
     }
   }
   ImGui::EndTable();
+  ImGui::PushTextWrapPos(0.0f);
   for (const ParticipantRow& row : facts.participants)
-    if (!row.doing.empty())
-      ImGui::TextDisabled("%s", fmt::format("{}: {}", row.name, row.doing).c_str());
+    if (!row.doing.empty()) ImGui::TextDisabled("%s", doing_words(row).c_str());
+  ImGui::PopTextWrapPos();
 }
 
 // A red light and what is recorded, in the current window.
@@ -225,12 +236,20 @@ void recording_line(const std::string& text) {
   text_line(text);
 }
 
-std::size_t status_lines(const PanelFacts& facts) {
+// Long lines are wrapped: they count as those that they take in a panel of the usual width.
+std::size_t status_lines(const PanelFacts& facts, float scale) {
+  constexpr float kInside_px = 296.0f;
   const auto& all = facts.participants;
-  return 3 + facts.given_up.size() + (facts.recording.empty() ? 0 : 1) + facts.troubles.size() +
-         2 * facts.devices.size() + (all.empty() ? 0 : all.size() + 1) +
-         static_cast<std::size_t>(
-             std::ranges::count_if(all, [](const auto& row) { return !row.doing.empty(); }));
+  std::size_t lines = 3 + (facts.recording.empty() ? 0 : 1) + (all.empty() ? 0 : all.size() + 1);
+  const auto add = [&](const std::string& text) {
+    const float high = ImGui::CalcTextSize(text.c_str(), nullptr, false, kInside_px * scale).y;
+    lines += static_cast<std::size_t>(std::lround(high / ImGui::GetTextLineHeight()));
+  };
+  for (const std::vector<std::string>* texts : {&facts.given_up, &facts.troubles, &facts.devices})
+    std::ranges::for_each(*texts, add);
+  for (const ParticipantRow& row : all)
+    if (!row.doing.empty()) add(doing_words(row));
+  return lines;
 }
 
 void draw_status(const PanelFacts& facts, const PanelsShown& shown, const PanelRect& rect,
@@ -245,9 +264,12 @@ void draw_status(const PanelFacts& facts, const PanelsShown& shown, const PanelR
   text_line(fmt::format("time {:.1f} s{}{}", facts.time_s,
                         facts.pace.empty() ? "" : "   " + facts.pace,
                         facts.water.empty() ? "" : "   water " + facts.water));
-  text_line(fmt::format("view {}{}", facts.view,
-                        facts.view == "free" ? fmt::format(", {:.2f} m/s", facts.speed_m_s) : ""));
+  text_line(
+      fmt::format("view {}{}", facts.view,
+                  facts.view == "free" ? ", " + speed_text(facts.speed_m_s, facts.units) : ""));
+  ImGui::PushTextWrapPos(0.0f);
   for (const std::string& line : facts.given_up) text_line(line);
+  ImGui::PopTextWrapPos();
   participants_table(facts, scale);
   ImGui::PushTextWrapPos(0.0f);
   for (const std::string& line : facts.troubles) text_line(line);
@@ -309,7 +331,8 @@ void draw_on_demand(const PanelFacts& facts, const PanelsShown& shown, const Dem
                     const std::vector<PanelRect>& places, TimeNs now_ns, float scale) {
   const auto place = [&](std::optional<std::size_t> at) { return at ? places[*at] : PanelRect{}; };
   if (const PanelRect at = place(demand.times); !at.empty()) draw_times(shown, at, now_ns, scale);
-  if (const PanelRect at = place(demand.gauges); !at.empty()) draw_gauges(*facts.gauges, at, scale);
+  if (const PanelRect at = place(demand.gauges); !at.empty())
+    draw_gauges(*facts.gauges, at, facts.units, scale);
   if (const PanelRect at = place(demand.inset); !at.empty()) draw_inset(*facts.inset, at, scale);
   if (const PanelRect at = place(demand.map); !at.empty())
     draw_map(facts.marks, facts.eye, *shown.trails, at, scale);
@@ -333,8 +356,16 @@ std::string hint_words(const std::string& hint, const std::vector<std::string>& 
   return words;
 }
 
-void draw_panels(const PanelFacts& facts, const FreeCamera& camera, const PanelsShown& shown,
-                 TimeNs now_ns, float scale) {
+std::string readout_words(const Readout& readout, hud::Units units) {
+  const double depth_m = readout.depth_m;
+  const std::string length = length_text(std::abs(depth_m), readout.decimals, units);
+  const std::string depth =
+      depth_m >= 0.0 ? fmt::format("depth {}", length) : fmt::format("{} above water", length);
+  return fmt::format("{}  {}  heading {}\u00b0", readout.whose, depth,
+                     hud::heading_text(readout.heading_rad).view());
+}
+
+void draw_panels(const PanelFacts& facts, const PanelsShown& shown, TimeNs now_ns, float scale) {
   const ImVec2 display = ImGui::GetIO().DisplaySize;
   std::vector<const SonarPanel*> sonars;  // the first one to show leads
   std::vector<float> aspects;
@@ -348,9 +379,9 @@ void draw_panels(const PanelFacts& facts, const FreeCamera& camera, const Panels
   for (const PanelRect& r : shown.taken)
     taken.push_back({r.x / scale, r.y / scale, r.width / scale, r.height / scale});
   const PanelLayout layout =
-      lay_out(display.x / scale, display.y / scale, height_of_lines(status_lines(facts), scale),
-              aspects, demand.wishes, taken);
-  if (!layout.readout.empty()) draw_readout(camera, layout.readout, scale);
+      lay_out(display.x / scale, display.y / scale,
+              height_of_lines(status_lines(facts, scale), scale), aspects, demand.wishes, taken);
+  if (!layout.readout.empty()) draw_readout(facts, layout.readout, scale);
   if (!layout.status.empty()) draw_status(facts, shown, layout.status, scale);
   for (std::size_t i = 0; i < layout.fans.size(); ++i)
     draw_sonar(*sonars[i], layout.fans[i], facts.sonar_gain_db, scale);
@@ -370,6 +401,12 @@ void draw_recording_light(const std::string& text, float scale) {
 
 void draw_hint(const std::string& text, float scale) {
   draw_hint(text, scale, {kEdge_px, ImGui::GetIO().DisplaySize.y / scale - 42.0f, 0.0f, 30.0f});
+}
+
+void draw_task(const std::string& text, float scale) {
+  constexpr float kLetters = 1.4f;
+  draw_hint(text, scale, {kEdge_px, ImGui::GetIO().DisplaySize.y / scale - 42.0f, 0.0f, 30.0f},
+            kLetters);
 }
 
 }  // namespace neritic::testbed

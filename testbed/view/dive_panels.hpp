@@ -33,6 +33,14 @@ struct ParticipantRow {
   double depth_m = 0.0, speed_m_s = 0.0, away_m = 0.0;
 };
 
+// The depth and heading that stand below the compass, and whose they are: the participant's that
+// carries the view or is chased, else the camera's.
+struct Readout {
+  std::string whose = "camera";
+  double depth_m = 0.0, heading_rad = 0.0;
+  int decimals = 2;  // of the depth
+};
+
 // Another camera's live picture.
 struct InsetPanel {
   std::string name;
@@ -51,6 +59,8 @@ struct PanelFacts {
   std::vector<std::string> devices;   // of the lab, up to two lines each
   std::string recording;              // "REC 0:12  FILE"; empty: nothing is recorded
   double sonar_gain_db = 0.0;
+  Readout readout;
+  hud::Units units = hud::Units::kMetric;  // of participants, gauges and the readout
   // On demand; those that are absent are not drawn.
   std::optional<VehicleGauges> gauges;
   std::optional<InsetPanel> inset;
@@ -75,10 +85,13 @@ struct PanelsShown {
 // layout's extras; sonars: how many there are to show.
 std::string hint_words(const std::string& hint, const std::vector<std::string>& wished,
                        const PanelLayout& layout, std::size_t sonars);
-void draw_panels(const PanelFacts& facts, const FreeCamera& camera, const PanelsShown& shown,
-                 TimeNs now_ns, float scale);
+void draw_panels(const PanelFacts& facts, const PanelsShown& shown, TimeNs now_ns, float scale);
+// "diver  depth 12.3 m  heading 091°"
+std::string readout_words(const Readout& readout, hud::Units units);
 // Where the panels are hidden: one line at the lower edge; the light of a recording.
 void draw_hint(const std::string& text, float scale);
+// The same in larger letters: what the person is to do.
+void draw_task(const std::string& text, float scale);
 void draw_recording_light(const std::string& text, float scale);
 
 }  // namespace neritic::testbed

@@ -12,8 +12,6 @@ namespace {
 // The force of held keys; with shift, as much as the thrusters have room for.
 constexpr double kPush_n = 30.0, kLift_n = 40.0, kTurn_n_m = 3.0, kFastTurn_n_m = 10.0;
 constexpr double kFullThrust_n = 1e4;
-// Each frame sends the keys. A window that draws none for so long has let go of the vehicle.
-constexpr double kKeysHold_s = 1.0;
 
 VehicleWrench wrench_of(const DiveInput& input) {
   VehicleWrench out;
@@ -45,6 +43,14 @@ bool DivePilot::had_authority() const {
          sources[wrench.source] == "keyboard";
 }
 
+// Whether the keys fly the vehicle in the newest state, as far as that can know of them.
+bool DivePilot::heard() const {
+  const GroupState& wrench = physics_->shown()
+                                 .vehicles()[vehicle_]
+                                 .groups[static_cast<std::size_t>(VehicleGroup::kWrench)];
+  return !flew_ || (had_authority() && wrench.phase == GroupPhase::kLive);
+}
+
 Result<DivePilot> DivePilot::create(LivePhysics* physics, bool may_fly) {
   DivePilot pilot(physics);
   if (may_fly && physics && !physics->world().vehicles().empty()) {
@@ -68,12 +74,15 @@ void DivePilot::hand_over(SampleInbox& inbox) {
   Event event{.group = static_cast<std::uint64_t>(VehicleGroup::kWrench)};
   event.authority = static_cast<std::uint64_t>(flying_ ? Authority::kLive : chosen.authority);
   event.source = flying_ ? *keyboard_ : chosen.source;
-  event.hold_s = flying_ ? kKeysHold_s : chosen.hold_s;
+  // Each frame sends the keys. A window that draws none for so long has let go of the vehicle.
+  event.hold_s = flying_ ? hold_.scene_s() : chosen.hold_s;
+  told_ = true;
   send(inbox, PayloadKind::kEvent, events_, event);
 }
 
-bool DivePilot::take(const DiveInput& input, int object) {
+bool DivePilot::take(const DiveInput& input, int object, double speed) {
   if (!physics_) return false;
+  if (hold_.frame(now_ns(), speed)) told_ = false;
   const auto& vehicles = physics_->world().vehicles();
   for (std::size_t i = 0; i < vehicles.size() && !flying_ && !flew_; ++i)
     if (object == static_cast<int>(vehicles[i].object)) vehicle_ = i;
@@ -86,7 +95,7 @@ bool DivePilot::take(const DiveInput& input, int object) {
 Status DivePilot::poll(SampleInbox& inbox, double) {
   if (!physics_ || std::exchange(sent_, true)) return {};
   NERITIC_TRY_STATUS(watch_->accept(physics_->shown_snapshot(), {}));
-  if (flying_ != flew_) hand_over(inbox);
+  if (flying_ != flew_ || (flying_ && !told_)) hand_over(inbox);
   flew_ = flying_;
   if (flying_) send(inbox, PayloadKind::kWrench, wrenches_, wrench_);
   return {};
@@ -97,7 +106,7 @@ int DivePilot::object() const {
   return static_cast<int>(physics_->world().vehicles()[vehicle_].object);
 }
 
-std::string DivePilot::doing(std::size_t object) const {
+std::string DivePilot::doing(std::size_t object, hud::Units units) const {
   if (!physics_) return {};
   const auto& vehicles = physics_->world().vehicles();
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
@@ -105,7 +114,8 @@ std::string DivePilot::doing(std::size_t object) const {
     const VehicleState& state = physics_->shown().vehicles()[i];
     const std::string heading = fmt::format(
         "heading {}\u00b0", hud::heading_text(rov::heading_of(state.body.attitude)).view());
-    if (flying_ && i == vehicle_) return heading + ", piloted";
+    if (flying_ && i == vehicle_)
+      return heading + (heard() ? ", piloted" : ", the keys are not heard");
     const auto& mission = vehicles[i].mission;
     if (!mission || mission->waypoint_count() == 0) return heading;
     return heading + fmt::format(", waypoint {} of {}", mission->waypoint_index(state.mission) + 1,
@@ -116,8 +126,10 @@ std::string DivePilot::doing(std::size_t object) const {
     if (humans[i].object != object) continue;
     const diver::GasReading gas =
         diver::read_gas(humans[i].body, physics_->shown().humans()[i].human);
-    return fmt::format("{:.0f} bar left, breathes {:.0f} l/min", 1e-5 * gas.tank_pa,
-                       gas.ventilation_l_min);
+    // As the diver's own instruments round it, to the safe side.
+    return fmt::format("{} {} left, breathes {:.0f} l/min",
+                       hud::pressure_text(gas.tank_pa, units).view(),
+                       hud::unit_names(units).pressure, gas.ventilation_l_min);
   }
   return {};
 }

@@ -11,6 +11,9 @@ static_assert(xr::kMostHiddenCorners <= render::kMostHidden);
 namespace {
 
 constexpr TimeNs kUnpaced_ns = 16'666'667;  // the period where no screen paces the frames
+constexpr const char* kSwimWords =
+    "you swim the diver: A D turn, also the mouse with its right button; W ahead, E Q up and down, "
+    "I K the jacket; P lets go";
 constexpr double kSpeeds[] = {0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0};
 
 std::uint32_t scaled(std::uint32_t pixels, double scale) {
@@ -39,6 +42,8 @@ Result<std::unique_ptr<DiveView>> DiveView::create(Session& session, xr::Display
   view->physics_ = physics;
   if (options.may_fly && physics && !physics->world().humans().empty())
     view->wearer_.emplace(*physics);
+  if (options.swim && view->wearer_) view->wearer_->swim_by_keys(true);
+  if (!overlay && !options.task.empty()) log_info("{}", options.task);
   if (physics && options.keep) view->keeper_.emplace(*physics, *options.keep);
   if (overlay) {
     NERITIC_TRY(view->console_,
@@ -48,7 +53,9 @@ Result<std::unique_ptr<DiveView>> DiveView::create(Session& session, xr::Display
                                  .keeper = view->keeper_ ? &*view->keeper_ : nullptr,
                                  .physics = physics,
                                  .memory = options.memory,
-                                 .devices = options.devices}));
+                                 .devices = options.devices,
+                                 .units = options.units,
+                                 .task = options.task}));
   }
   if (options.hud)
     view->hud_ = std::make_unique<DiveHud>(session.device(), session.frames(), *physics,
@@ -109,8 +116,7 @@ bool DiveView::swum_by_keys(DiveInput& input) {
     const bool on = !wearer_->swum_by_keys();
     wearer_->swim_by_keys(on);
     if (on && !his) choice_.choose_on(static_cast<int>(wearer_->object()));
-    tell(on ? "you swim the diver: W ahead, A D turn, E Q up and down, I K the jacket, P lets go"
-            : "the diver goes on as before");
+    tell(on ? kSwimWords : "the diver goes on as before");
   }
   return wearer_->swum_by_keys();
 }
@@ -135,13 +141,16 @@ bool DiveView::take_input() {
   if (input.reset) wears_ = true;
   const bool swum = swum_by_keys(input);
   // Until the stage lies at the diver's eyes, poses in it mean nothing to him.
-  if (wearer_) wearer_->take(wears_ && placed_ ? frame_ : xr::DisplayFrame{}, input);
+  const double speed = options_.clock ? options_.clock->speed() : 1.0;
+  if (wearer_)
+    wearer_->take(wears_ && placed_ ? frame_ : xr::DisplayFrame{}, input, choice_.world_from_eyes(),
+                  speed);
   const bool flew = pilot_.flying();
   DiveInput flown = input;
   if (swum) flown.move = Vec3(0.0), flown.turn = 0.0;
-  const bool flying = pilot_.take(flown, choice_.carrier());
+  const bool flying = pilot_.take(flown, choice_.carrier(), speed);
   if (flying && !flew && choice_.carrier() != pilot_.object()) choice_.choose_on(pilot_.object());
-  choice_.take(input, elapsed_s_, flying || swum);
+  choice_.take(input, elapsed_s_, flying || swum, swum ? static_cast<int>(wearer_->object()) : -1);
   return input.quit;
 }
 
@@ -154,11 +163,15 @@ void DiveView::take_click() {
                                         static_cast<double>(group.width) / group.height));
 }
 
-// Those of the vehicle that is flown, or is looked from; without one all of the scene. A recording
-// does not have it.
+// Those of the vehicle that is flown, of the diver who is swum, or of what is looked from; where
+// that has none all of the scene. The note says whose. A recording does not have it.
 void DiveView::switch_lamps() {
   const scene::Scene& scene = session_.scene();
-  const int carrier = pilot_.flying() ? pilot_.object() : choice_.carrier();
+  const bool swum = wearer_ && wearer_->swum_by_keys();
+  const int carrier = pilot_.flying() ? pilot_.object()
+                      : swum          ? static_cast<int>(wearer_->object())
+                                      : choice_.carrier();
+  std::vector<std::string> whose;
   const auto is_on = [&](const scene::Lamp& lamp, int object) {
     return carrier_of(scene, lamp.mount) == object;
   };
@@ -170,10 +183,14 @@ void DiveView::switch_lamps() {
     if (own && !is_on(scene.lamps[i], carrier)) continue;
     session_.dim_lamp(i, lamp_share_);
     ++count;
+    const int on = carrier_of(scene, scene.lamps[i].mount);
+    const std::string& name =
+        on >= 0 ? scene.objects[static_cast<std::size_t>(on)].name : scene.title;
+    if (std::ranges::find(whose, name) == whose.end()) whose.push_back(name);
   }
   tell(count == 0 ? "no lamp to switch"
-                  : fmt::format("{} {}: {:.0f} %", count, count == 1 ? "lamp" : "lamps",
-                                100.0 * lamp_share_));
+                  : fmt::format("{} {} of {}: {:.0f} %", count, count == 1 ? "lamp" : "lamps",
+                                fmt::join(whose, ", "), 100.0 * lamp_share_));
 }
 
 std::optional<ViewMemory> DiveView::memory() const {

@@ -48,6 +48,9 @@ struct DiveViewOptions {
   std::string no_keys_for_files;
   ViewMemory memory;                 // as the last window looked
   const Devices* devices = nullptr;  // whose health the panels show; outlives the view
+  bool swim = false;  // the keys swim the first diver from the start; needs one, and a window
+  hud::Units units = hud::Units::kMetric;  // of the panels
+  std::string task;  // words for the person, in place of the operator's panels; empty: none
 };
 
 class DiveView final : public FrameView {

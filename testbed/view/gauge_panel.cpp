@@ -83,10 +83,12 @@ PanelWish gauges_wish(const VehicleGauges& gauges) {
   return {.wanted = kFrame_px + rows * kRow_px, .least = kFrame_px + 2.0f * kRow_px};
 }
 
-void draw_gauges(const VehicleGauges& gauges, const PanelRect& rect, float scale) {
+void draw_gauges(const VehicleGauges& gauges, const PanelRect& rect, hud::Units units,
+                 float scale) {
   begin_panel(gauges.name + "###gauges", rect, scale);
-  text_line(fmt::format("{}   {}\u00b0   {:.2f} m/s", metres_text(gauges.depth_m, 2),
-                        hud::heading_text(gauges.heading_rad).view(), gauges.speed_m_s));
+  text_line(fmt::format("{}   {}\u00b0   {}", length_text(gauges.depth_m, 2, units),
+                        hud::heading_text(gauges.heading_rad).view(),
+                        speed_text(gauges.speed_m_s, units)));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float line = ImGui::GetTextLineHeight(), label = 70.0f * scale;
   for (std::size_t i = 0; i < gauges.thrust.size(); ++i) {

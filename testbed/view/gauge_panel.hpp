@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "hud/numbers.hpp"
 #include "testbed/simulation/physics_world.hpp"
 #include "testbed/view/panel_layout.hpp"
 
@@ -27,6 +28,6 @@ struct VehicleGauges {
 VehicleGauges gauges_of(const PhysicsWorld& world, const PhysicsState& state, std::size_t vehicle);
 
 PanelWish gauges_wish(const VehicleGauges& gauges);
-void draw_gauges(const VehicleGauges& gauges, const PanelRect& rect, float scale);
+void draw_gauges(const VehicleGauges& gauges, const PanelRect& rect, hud::Units units, float scale);
 
 }  // namespace neritic::testbed

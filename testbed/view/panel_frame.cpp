@@ -1,8 +1,14 @@
 #include "testbed/view/panel_frame.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace neritic::testbed {
+namespace {
+
+constexpr double kFoot_m = 0.3048;  // exact
+
+}  // namespace
 
 void begin_panel(const std::string& title, const PanelRect& rect, float scale, int flags) {
   ImGui::SetNextWindowPos(ImVec2(rect.x * scale, rect.y * scale));
@@ -19,6 +25,18 @@ float height_of_lines(std::size_t lines, float scale) {
 std::string metres_text(double m, int decimals) {
   const double steps = std::pow(10.0, decimals);
   return fmt::format("{:.{}f} m", std::round(steps * m) / steps + 0.0, decimals);
+}
+
+std::string length_text(double m, int decimals, hud::Units units) {
+  if (units == hud::Units::kMetric) return metres_text(m, decimals);
+  std::string text = metres_text(m / kFoot_m, std::max(0, decimals - 1));
+  text.replace(text.size() - 1, 1, "ft");
+  return text;
+}
+
+std::string speed_text(double m_s, hud::Units units) {
+  return units == hud::Units::kMetric ? fmt::format("{:.2f} m/s", m_s)
+                                      : fmt::format("{:.1f} ft/s", m_s / kFoot_m);
 }
 
 void text_line(const std::string& text) {

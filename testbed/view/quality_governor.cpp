@@ -113,12 +113,12 @@ Thrift thrift_at(std::uint32_t light) {
   return kThrift.at(light);
 }
 
-std::vector<std::string> given_up(const Quality& quality) {
+std::vector<std::string> given_up(const Quality& quality, bool sonars) {
   std::vector<std::string> lines;
-  if (quality.view_scale < 1.0 || quality.ping_every > 1)
-    lines.push_back(fmt::format(
-        "drawn at {:.0f} %{}", 100.0 * quality.view_scale,
-        quality.ping_every > 1 ? fmt::format("   1 ping of {}", quality.ping_every) : ""));
+  const bool skips = sonars && quality.ping_every > 1;
+  if (quality.view_scale < 1.0 || skips)
+    lines.push_back(fmt::format("drawn at {:.0f} %{}", 100.0 * quality.view_scale,
+                                skips ? fmt::format("   1 ping of {}", quality.ping_every) : ""));
   if (quality.light > 0)
     lines.push_back(
         fmt::format("light {} of {} lower{}", quality.light, kLightLevels - 1,

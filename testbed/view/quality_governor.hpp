@@ -35,7 +35,8 @@ scene::PictureDetail detail_at(const scene::PictureDetail& camera, std::uint32_t
 // And what is left out there.
 Thrift thrift_at(std::uint32_t light);
 // Lines that tell a person each thing that is less than at the best rung; none at the best.
-std::vector<std::string> given_up(const Quality& quality);
+// sonars: whether there are any, whose rates it lowers too.
+std::vector<std::string> given_up(const Quality& quality, bool sonars = true);
 
 // Where a machine without a graphics card begins with pictures of so many pixels: two cores draw
 // that in time. The whole picture first, and the way down from it, would be seconds of a slide

@@ -19,6 +19,8 @@ constexpr double kLongestGap_s = 1.0;  // after which it does not turn, but is b
 constexpr double kChaseRoom = 1.25;    // distance over that at which the ball fills the picture
 constexpr double kLeastAway_m = 1.8, kLeastAway = 0.8, kMostAway = 8.0;
 constexpr double kNearer = 1.15;  // a click of the wheel
+// Of a diver's head by keys; slow frames turn it by as much as this time.
+constexpr double kHeadTurn_rad_s = radians(45.0), kLongestTurn_s = 0.5;
 
 // The bounds of a box's corners, carried into another frame.
 void add_corners(scene::Bounds& bounds, const Mat4& to, const scene::Bounds& own) {
@@ -90,6 +92,17 @@ std::size_t first_viewpoint(const scene::Scene& scene) {
   return found == all.end() ? 0 : static_cast<std::size_t>(found - all.begin());
 }
 
+std::size_t own_viewpoint(const scene::Scene& scene) {
+  const auto diver = std::ranges::find_if(
+      scene.objects, [](const scene::Object& object) { return object.human.has_value(); });
+  const auto all = viewpoints_of(scene);
+  const auto own = std::ranges::find_if(all, [&](const Viewpoint& viewpoint) {
+    return viewpoint.kind == Kind::kCamera && diver != scene.objects.end() &&
+           viewpoint.carrier == diver - scene.objects.begin();
+  });
+  return own == all.end() ? first_viewpoint(scene) : static_cast<std::size_t>(own - all.begin());
+}
+
 Result<std::size_t> viewpoint_named(const std::string& name, const scene::Scene& scene) {
   std::vector<std::string> known;
   for (const Viewpoint& viewpoint : viewpoints_of(scene)) known.push_back(viewpoint.name);
@@ -114,7 +127,7 @@ void ViewChoice::choose(std::size_t viewpoint) {
   chosen_ = viewpoint;
   look_yaw_rad_ = look_pitch_rad_ = 0.0;
   away_ = 1.0;
-  chasing_ = false;
+  chasing_ = in_head_ = false;
 }
 
 void ViewChoice::choose_on(int carrier) {
@@ -123,7 +136,8 @@ void ViewChoice::choose_on(int carrier) {
   if (on != all_.end()) choose(static_cast<std::size_t>(on - all_.begin()));
 }
 
-void ViewChoice::take(const DiveInput& input, double elapsed_s, bool flying) {
+void ViewChoice::take(const DiveInput& input, double elapsed_s, bool flying, int swum) {
+  swum_ = swum;
   const auto count = static_cast<int>(all_.size());
   if (input.view_step != 0)
     choose(static_cast<std::size_t>(
@@ -137,9 +151,21 @@ void ViewChoice::take(const DiveInput& input, double elapsed_s, bool flying) {
     DiveInput own = input;
     if (flying) own.move = Vec3(0.0);
     eye_.update(own, elapsed_s);
+  } else if (in_head_ && swum_ >= 0) {
+    turn_head(input, elapsed_s);
   } else {
     look_round(input, elapsed_s);
   }
+}
+
+void ViewChoice::turn_head(const DiveInput& input, double elapsed_s) {
+  DiveInput own = input;
+  own.move = Vec3(0.0);
+  eye_.update(own, elapsed_s);
+  // A stick that looks is no key that turns.
+  const double keys = input.look_rate.x != 0.0 ? 0.0 : input.turn;
+  eye_.turn(std::clamp(input.move.x + keys, -1.0, 1.0) * kHeadTurn_rad_s *
+            std::min(elapsed_s, kLongestTurn_s));
 }
 
 void ViewChoice::look_round(const DiveInput& input, double elapsed_s) {
@@ -182,6 +208,9 @@ void ViewChoice::follow(const scene::MotionSource& motion, double time_s) {
     if (look_yaw_rad_ != 0.0 || look_pitch_rad_ != 0.0)
       world_from_view_ =
           world_from_view_ * Pose{{}, from_yaw_pitch_roll(look_yaw_rad_, look_pitch_rad_, 0.0)};
+    const bool swum = swum_ >= 0 && carrier() == swum_;
+    if (swum && in_head_) world_from_view_.rotation = eye_.world_from_view().rotation;
+    in_head_ = swum;
   } else {
     world_from_view_ = chase(motion, time_s);
   }

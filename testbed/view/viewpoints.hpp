@@ -2,6 +2,7 @@
 // along, from behind each participant, and freely. Plain values; rendering thread.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,9 @@ std::vector<Viewpoint> viewpoints_of(const scene::Scene& scene);
 // Where a dive begins that names no view: behind the first diver that moves by physics, else the
 // first such vehicle, else at the first camera.
 std::size_t first_viewpoint(const scene::Scene& scene);
+// Where a dive begins in which the first diver that moves by physics is swum by keys: the first
+// camera that the diver carries, else behind. first_viewpoint() without such a diver.
+std::size_t own_viewpoint(const scene::Scene& scene);
 // The viewpoint of that name; kBadInput with all names.
 Result<std::size_t> viewpoint_named(const std::string& name, const scene::Scene& scene);
 
@@ -49,19 +53,27 @@ class ViewChoice {
   // The first that the object carries: a camera, else its chase.
   void choose_on(int carrier);
   // Keys of a frame: another viewpoint, the way back, looking round. Moving leaves any other
-  // viewpoint for the free one, from where its eye is, unless the keys fly a vehicle.
-  void take(const DiveInput& input, double elapsed_s, bool flying);
+  // viewpoint for the free one, from where its eye is, unless the keys fly a vehicle. swum: the
+  // object of a diver whom the keys swim; -1: none. Out of the eyes of that diver the view turns as
+  // a head does, in the world and level, by mouse and keys.
+  void take(const DiveInput& input, double elapsed_s, bool flying, int swum = -1);
   // Puts the eye where everything is at that time. A mounted camera's is its pose in `motion`, bit
-  // for bit, until the user looks round.
+  // for bit, until the user looks round, or swims the diver that carries it.
   void follow(const scene::MotionSource& motion, double time_s);
 
   const Pose& world_from_view() const { return world_from_view_; }
   // The eye as angles and a place; its roll is left out.
   const FreeCamera& eye() const { return eye_; }
   int carrier() const { return viewpoint().carrier; }
+  // Where the view out of the eyes of the swum diver points, as it was shown last; nothing: another
+  // view was.
+  std::optional<Quat> world_from_eyes() const {
+    return in_head_ ? std::optional(world_from_view_.rotation) : std::nullopt;
+  }
 
  private:
   void look_round(const DiveInput& input, double elapsed_s);
+  void turn_head(const DiveInput& input, double elapsed_s);
   Pose chase(const scene::MotionSource& motion, double time_s);
 
   std::vector<Viewpoint> all_;
@@ -74,6 +86,8 @@ class ViewChoice {
   double away_ = 1.0;                                 // of a chase: distance over that at the start
   double chase_yaw_rad_ = 0.0, chased_s_ = 0.0;       // smoothed course of the chased, and when
   bool chasing_ = false;                              // those are known
+  int swum_ = -1;                                     // the object of the diver whom the keys swim
+  bool in_head_ = false;                              // the view turns as the head of that diver
 };
 
 }  // namespace neritic::testbed

@@ -11,9 +11,6 @@
 namespace neritic::testbed {
 namespace {
 
-// Frames that send nothing for so long have let go (kDiverHold_s is of the same order); of slow
-// frames so many must be missing, and nobody waits longer than the last.
-constexpr double kHold_s = 1.0, kHoldFrames = 3.0, kLongestHold_s = 15.0;
 constexpr double kPush = 0.1;                         // of a stick: less is its rest
 constexpr double kSpeed_m_s = 0.5, kFast_m_s = 0.68;  // with full gear (diver/swimmer.hpp)
 constexpr double kAhead_m = 5.0;                      // of the place that is swum to
@@ -24,9 +21,7 @@ constexpr double kTurn_rad = radians(60.0), kTurningShare = 0.4;
 }  // namespace
 
 Wearer::Wearer(LivePhysics& physics)
-    : physics_(&physics),
-      hold_s_(kHold_s),
-      gaze_(diver::headset_gaze(diver::GazeMethod::kVelocity)) {
+    : physics_(&physics), gaze_(diver::headset_gaze(diver::GazeMethod::kVelocity)) {
   const diver::Body& body = human().body;
   const Vec3 eyes =
       diver::body_from_eyes(body, diver::posture_of(body, diver::straight_joints(), {})).position_m;
@@ -43,21 +38,15 @@ Pose Wearer::world_from_stage(const scene::MotionSource& motion, double time_s) 
   return {body * eyes_m_, from_yaw_pitch_roll(std::atan2(-ahead.x, -ahead.z), 0.0, 0.0)};
 }
 
-void Wearer::take(const xr::DisplayFrame& frame, const DiveInput& input) {
+void Wearer::take(const xr::DisplayFrame& frame, const DiveInput& input,
+                  const std::optional<Quat>& world_from_eyes, double speed) {
   world_from_head_ = frame.world_from_head;
   tracked_ = frame.tracked;
   input_ = input;
+  world_from_eyes_ = world_from_head_ || !by_keys_ ? std::nullopt : world_from_eyes;
   fresh_ = true;
-  const TimeNs now = now_ns();
-  if (taken_ns_ > 0) hold_for(kHoldFrames * 1e-9 * static_cast<double>(now - taken_ns_));
-  taken_ns_ = now;
-}
-
-// Seldom frames are no silence: what was claimed is claimed anew, for longer.
-void Wearer::hold_for(double seconds) {
-  if (!(seconds > hold_s_) || hold_s_ >= kLongestHold_s) return;
-  hold_s_ = std::min(1.5 * seconds, kLongestHold_s);
-  claimed_.fill(false);
+  // Seldom frames are no silence.
+  if (hold_.frame(now_ns(), speed)) told_.fill(false);
 }
 
 void Wearer::send(SampleInbox& inbox, PayloadKind kind, const Payload& payload,
@@ -69,30 +58,35 @@ void Wearer::send(SampleInbox& inbox, PayloadKind kind, const Payload& payload,
               payload});
 }
 
-// Once a group. A device that the scene names keeps its group.
+// Once a group, and anew with another hold. A device that the scene names keeps its group.
 void Wearer::claim(SampleInbox& inbox, DiverGroup group) {
-  if (std::exchange(claimed_[static_cast<std::size_t>(group)], true)) return;
+  if (std::exchange(told_[static_cast<std::size_t>(group)], true)) return;
+  claimed_[static_cast<std::size_t>(group)] = true;
   if (physics_->world().start_inputs().humans()[0].of(group).authority == Authority::kLive) return;
   Event event{.group = static_cast<std::uint64_t>(group)};
   event.authority = static_cast<std::uint64_t>(Authority::kLive);
   event.source = *source_;
-  event.hold_s = hold_s_;
+  event.hold_s = hold_.scene_s();
   send(inbox, PayloadKind::kEvent, event, now_ns());
 }
 
 // Gives back what was swum by keys, to the scene's choice.
 void Wearer::let_go(SampleInbox& inbox) {
   swims_ = false;
-  for (const DiverGroup group : {DiverGroup::kBody, DiverGroup::kButtons}) {
-    if (!std::exchange(claimed_[static_cast<std::size_t>(group)], false)) continue;
-    const GroupControl& chosen = physics_->world().start_inputs().humans()[0].of(group);
-    if (chosen.authority == Authority::kLive) continue;
-    Event event{.group = static_cast<std::uint64_t>(group)};
-    event.authority = static_cast<std::uint64_t>(chosen.authority);
-    event.source = chosen.source;
-    event.hold_s = chosen.hold_s;
-    send(inbox, PayloadKind::kEvent, event, now_ns());
-  }
+  for (const DiverGroup group : {DiverGroup::kBody, DiverGroup::kButtons, DiverGroup::kGaze})
+    let_go(inbox, group);
+}
+
+void Wearer::let_go(SampleInbox& inbox, DiverGroup group) {
+  told_[static_cast<std::size_t>(group)] = false;
+  if (!std::exchange(claimed_[static_cast<std::size_t>(group)], false)) return;
+  const GroupControl& chosen = physics_->world().start_inputs().humans()[0].of(group);
+  if (chosen.authority == Authority::kLive) return;
+  Event event{.group = static_cast<std::uint64_t>(group)};
+  event.authority = static_cast<std::uint64_t>(chosen.authority);
+  event.source = chosen.source;
+  event.hold_s = chosen.hold_s;
+  send(inbox, PayloadKind::kEvent, event, now_ns());
 }
 
 void Wearer::swim_by_keys(bool on) {
@@ -141,6 +135,10 @@ Status Wearer::poll(SampleInbox& inbox, double scene_time_s) {
     send(inbox, PayloadKind::kHandPoses, hands, now);
   }
   if (tracked_.gaze) send_gaze(inbox, *tracked_.gaze);
+  if (world_from_eyes_)
+    send_view(inbox, now);
+  else if (by_keys_ && !tracked_.gaze)
+    let_go(inbox, DiverGroup::kGaze);
   if (ends)
     let_go(inbox);
   else if (!swims_ && (by_keys_ || (world_from_head_ && glm::length(input_.move) > kPush)))
@@ -162,6 +160,22 @@ void Wearer::send_gaze(SampleInbox& inbox, const xr::Tracked::Gaze& gaze) {
   send(inbox, PayloadKind::kGaze, Gaze{gaze_.state()}, gaze.sampled_ns);
 }
 
+// A window has no eye tracker: the gaze is where the middle of the view points, without events of
+// an eye. A view that turns as fast as a saccade looks at nothing.
+void Wearer::send_view(SampleInbox& inbox, TimeNs now) {
+  const double time_s = 1e-9 * static_cast<double>(now), passed_s = time_s - viewed_.time_s;
+  const Vec3 ahead = *world_from_eyes_ * Vec3(0, 0, -1);
+  const bool first = !claimed_[static_cast<std::size_t>(DiverGroup::kGaze)] || !(passed_s > 0.0);
+  viewed_.velocity_rad_s = first ? 0.0 : diver::angle_between(viewed_.direction, ahead) / passed_s;
+  const bool rests = viewed_.velocity_rad_s < diver::GazeSettings().velocity_rad_s;
+  viewed_.fixated_s = rests && !first ? viewed_.fixated_s + passed_s : 0.0;
+  viewed_.time_s = time_s;
+  viewed_.direction = viewed_.fixation = ahead;
+  viewed_.now = rests ? diver::GazeClass::kFixation : diver::GazeClass::kSaccade;
+  claim(inbox, DiverGroup::kGaze);
+  send(inbox, PayloadKind::kGaze, Gaze{viewed_}, now);
+}
+
 // Towards where the head looks and the sticks push.
 std::optional<diver::SwimGoal> Wearer::pushed() const {
   if (!world_from_head_ || !(glm::length(input_.move) > kPush)) return std::nullopt;
@@ -174,14 +188,19 @@ std::optional<diver::SwimGoal> Wearer::pushed() const {
 }
 
 // Ahead, up and down along the course, which the other keys turn. Without a key he stays there.
+// Where his own view is shown, those keys turn the view (ViewChoice), and ahead is where it points.
 diver::SwimGoal Wearer::pushed_by_keys() {
-  const double turn = std::clamp(input_.move.x + input_.turn, -1.0, 1.0);
+  const double turn = world_from_eyes_ ? 0.0 : std::clamp(input_.move.x + input_.turn, -1.0, 1.0);
   const double ahead = std::max(0.0, -input_.move.z), up = input_.move.y;
   if (!(std::abs(turn) > kPush || ahead > kPush || std::abs(up) > kPush))
     return {stays_ned_m_, 0.0};
   const double course =
       course_of(diver::standing_pose(Vec3(0.0), state().human.root.attitude).rotation, yaw_rad_);
   if (std::abs(turn) > kPush) yaw_rad_ = course - turn * kTurn_rad;
+  if (world_from_eyes_) {
+    const Vec3 starboard = *world_from_eyes_ * Vec3(1, 0, 0);
+    yaw_rad_ = std::atan2(-starboard.z, starboard.x);
+  }
   const double level =
       std::max({ahead, kTurningShare * std::abs(turn), kTurningShare * std::abs(up)});
   const Vec3 push = from_yaw_pitch_roll(yaw_rad_, 0.0, 0.0) * Vec3(0.0, up, -level);
@@ -204,6 +223,7 @@ void Wearer::swim(SampleInbox& inbox, double scene_time_s) {
   diver::HumanInputs limbs;
   diver::swim(human().body, human().file.swimmer, goal, body, swimmer_, dt_s, limbs);
   const TimeNs now = now_ns();
+  claim(inbox, DiverGroup::kBody);
   send(inbox, PayloadKind::kBodyJoints, BodyJoints{limbs.joints, limbs.other_power_w}, now);
   claim(inbox, DiverGroup::kButtons);
   const std::uint64_t pressed = input_.jacket != 0 ? input_.jacket : limbs.buttons;

@@ -1,7 +1,7 @@
 // A person as the scene's first diver: head, hands, gaze and swimming of a headset's wearer, and
-// in a window the jacket's buttons and swimming by keys, become samples of the source "wearer", as
-// those of any other device. The stage goes with the diver's body, level, so that the wearer's eyes
-// are the diver's. Rendering thread.
+// in a window the jacket's buttons, swimming by keys and where the view points, become samples of
+// the source "wearer", as those of any other device. The stage goes with the diver's body, level,
+// so that the wearer's eyes are the diver's. Rendering thread.
 #pragma once
 
 #include <optional>
@@ -13,6 +13,7 @@
 #include "testbed/motion/live_physics.hpp"
 #include "testbed/samples/source.hpp"
 #include "testbed/view/dive_input.hpp"
+#include "testbed/view/host_hold.hpp"
 
 namespace neritic::testbed {
 
@@ -25,8 +26,13 @@ class Wearer final : public SampleSource {
   // tracked rides with the body: a step between two frames moves both.
   Pose world_from_stage(const scene::MotionSource& motion, double time_s);
   // The wearer's acts in this frame; frame.world_from_head tells whether he is tracked.
-  void take(const xr::DisplayFrame& frame, const DiveInput& input);
-  // Without a headset: the keys swim the diver from now on, or no longer. Ahead is where he swims.
+  // world_from_eyes: in a window, the view out of the eyes of the diver whom the keys swim: the
+  // gaze is where its middle points, and ahead is there. Nothing: another view is shown. speed:
+  // seconds of the scene in one of the host.
+  void take(const xr::DisplayFrame& frame, const DiveInput& input,
+            const std::optional<Quat>& world_from_eyes = {}, double speed = 1.0);
+  // Without a headset: the keys swim the diver from now on, or no longer. Ahead is where he swims,
+  // or where his own view points.
   void swim_by_keys(bool on);
   bool swum_by_keys() const { return by_keys_; }
   std::size_t object() const { return human().object; }
@@ -37,14 +43,15 @@ class Wearer final : public SampleSource {
  private:
   void send(SampleInbox& inbox, PayloadKind kind, const Payload& payload, TimeNs captured_ns);
   void claim(SampleInbox& inbox, DiverGroup group);
-  void hold_for(double seconds);
   void let_go(SampleInbox& inbox);
+  void let_go(SampleInbox& inbox, DiverGroup group);
   void begin_swimming(SampleInbox& inbox, double scene_time_s);
   std::optional<diver::SwimGoal> pushed() const;
   diver::SwimGoal pushed_by_keys();
   Pose riding(const Pose& world_from_tracked) const;
   void swim(SampleInbox& inbox, double scene_time_s);
   void send_gaze(SampleInbox& inbox, const xr::Tracked::Gaze& gaze);
+  void send_view(SampleInbox& inbox, TimeNs now);
   const PhysicsHuman& human() const { return physics_->world().humans().front(); }
   const HumanPhysics& state() const { return physics_->shown().humans()[0]; }
 
@@ -55,13 +62,14 @@ class Wearer final : public SampleSource {
   std::optional<Pose> world_from_body_;  // the hips when the stage was placed
   xr::Tracked tracked_;
   DiveInput input_;
-  bool fresh_ = false;  // those were not sent yet
-  TimeNs taken_ns_ = 0;
-  double hold_s_;  // of what is claimed
-  std::array<bool, kDiverGroups> claimed_{};
+  bool fresh_ = false;                                 // those were not sent yet
+  HostHold hold_;                                      // of what is claimed
+  std::array<bool, kDiverGroups> claimed_{}, told_{};  // told_: with the hold as it is now
   std::array<std::uint64_t, kPayloadKinds> sequences_{};
   diver::GazeMonitor gaze_;
   TimeNs gazed_ns_ = 0;
+  std::optional<Quat> world_from_eyes_;  // of a window's view out of them
+  diver::GazeState viewed_;              // where that pointed last
   // Swimming by hand, from the first push on.
   bool swims_ = false, by_keys_ = false, began_by_keys_ = false;
   double yaw_rad_ = 0.0;  // by keys: the course that is held

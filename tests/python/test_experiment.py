@@ -2,11 +2,13 @@
 import math
 import os
 import pathlib
+import pty
 import re
 import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 import unittest.mock
@@ -255,6 +257,91 @@ class Questionnaires(unittest.TestCase):
         for text in ("", "seven", "101", "-5", "7"):
             self.assertIsNone(questionnaires.check("nasa_tlx", 0, text)[0])
         self.assertEqual(questionnaires.check("nasa_tlx", 0, " 55 "), (55, None))
+
+
+class PersonsSide(unittest.TestCase):
+    def test_the_shark_is_on_either_side_by_the_seed(self):
+        import shark
+        import shark_person
+        s = {k: v.default for k, v in shark.SETTINGS.items()}
+        angles = [shark_person.away_deg(s, seed) for seed in range(1, 41)]
+        self.assertTrue(10 < sum(a > 0 for a in angles) < 30, angles)
+        self.assertTrue(all(60 <= abs(a) <= 120 for a in angles), angles)
+        self.assertGreater(max(map(abs, angles)) - min(map(abs, angles)), 30)
+        self.assertEqual(shark_person.away_deg(s | {"person_side": "starboard", "person_spread_deg": 0.0}, 3), -90.0)
+
+
+class Report(unittest.TestCase):
+    def test_a_setting_that_is_a_factor_or_drawn_is_told_as_such(self):
+        told = {"settings": {"slope_deg": 0.0, "range_m": 6.0, "water": "IB"}, "factors": {"slope_deg": [0.0, 5.0]}, "vary": {"range_m": [4.0, 8.0]}}
+        self.assertEqual([report.setting(told, k) for k in told["settings"]], ["0 / 5", "4 to 8", "IB"])
+
+
+class FakeRobot:
+    """What the wizard tells it, and when."""
+    name = "rov"
+
+    def __init__(self):
+        self.told = []
+
+    def goto(self):
+        pass
+
+    def velocity(self, *way, hold):
+        self.told.append((time.monotonic(), list(way), hold))
+
+    def release(self):
+        self.told.append((time.monotonic(), None, 0.0))
+
+
+class Wizard(unittest.TestCase):
+    """The console at a terminal of its own, with a fake robot."""
+
+    def session(self, *presses):
+        """(the robot's orders, markers) of keys and pauses."""
+        import wizard
+        robot, marks, (ours, theirs) = FakeRobot(), [], pty.openpty()
+        fake = SimpleNamespace(connect=lambda *_, **__: SimpleNamespace(agents={"rov": robot}, close=lambda: None),
+                                     Error=RuntimeError, BadInput=ValueError)
+        before = wizard.Tools, sys.stdin, sys.stdout
+
+        def play():
+            for press in presses:
+                if isinstance(press, str):
+                    os.write(ours, press.encode())
+                else:
+                    time.sleep(press)
+            os.write(ours, b"x")
+        player = threading.Thread(target=play)
+        wizard.Tools = lambda *_: SimpleNamespace(python=lambda: fake)
+        sys.stdin, sys.stdout = os.fdopen(theirs, "r"), open(os.devnull, "w")
+        try:
+            player.start()
+            wizard.run(SimpleNamespace(program=""), "", lambda **what: marks.append(what))
+        finally:
+            player.join()
+            sys.stdin.close()
+            sys.stdout.close()
+            wizard.Tools, sys.stdin, sys.stdout = before
+            os.close(ours)
+        return robot.told, marks
+
+    def test_keys_that_come_at_once_are_all_taken(self):
+        _, marks = self.session(0.3, "135", 0.5)
+        self.assertEqual([m["phrase"] for m in marks if m["marker"] == "wizard says"], ["come here", "look there", "well done"])
+
+    def test_after_a_key_and_after_stop_the_robot_is_held_until_it_is_given_back(self):
+        told, marks = self.session(0.2, "w", 0.3, " ", 2.5, "0", 1.0)
+        orders = [o for o in told if o[1] is not None]
+        self.assertIn([0.4, 0.0, 0.0, 0.0], [o[1] for o in orders])
+        still = [o for o in orders if not any(o[1])]
+        self.assertGreater(still[-1][0] - still[0][0], 2.0)
+        # No order ends before the next comes.
+        for a, b in zip(orders, orders[1:]):
+            self.assertLess(b[0] - a[0], a[2])
+        self.assertIn("wizard releases", [m["marker"] for m in marks])
+        released = next(o[0] for o in told if o[1] is None)
+        self.assertFalse([o for o in orders if o[0] > released])
 
 
 class Study(unittest.TestCase):

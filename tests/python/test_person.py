@@ -50,7 +50,7 @@ class Headset(unittest.TestCase):
             file.write(SCRIPT + f"report {folder}/report\n")
         done = subprocess.run(
             ["/usr/bin/python3", "-B", str(ROOT / "tools/experiment"), "shark", "--program", PROGRAM, "--out", out, "--runs", "1", "--quiet",
-             "--set=person=\"headset\"", "--set=person_bearing_deg=35", "--set=gaze_within_deg=12", *(f"--set={one}" for one in sets)],
+             "--set=person=\"headset\"", "--set=person_bearing_deg=35", "--set=person_spread_deg=0", "--set=person_side=port", "--set=gaze_within_deg=12", *(f"--set={one}" for one in sets)],
             env=os.environ | {"XR_RUNTIME_JSON": manifest, "NERITIC_FAKE_XR": script}, capture_output=True, text=True, timeout=250)
         with open(os.path.join(out, "runs.jsonl")) as file:
             run = json.loads(file.read().splitlines()[1])

@@ -60,6 +60,10 @@ TEST_F(DivePhysics, FlagsThatDoNotFitEndInOneLine) {
       {"--headless --diver ada", "dive.toml", "--diver: found --headless without --hud"},
       {"--headless --units imperial", "dive.toml", "--units: found --headless without --hud"},
       {"--headless --refresh 90", "dive.toml", "--refresh: found --headless beside it"},
+      {"--headless --swim", "dive.toml", "--swim: found --headless beside it"},
+      {"--headless --task look", "dive.toml", "--task: found --headless beside it"},
+      {"--display window --swim", "dive.toml",
+       "--swim: found a scene without a diver that moves by physics; accepted: a scene with"},
       {"--headless --bindings own.toml", "dive.toml", "--bindings: found --headless beside it"}};
   for (const auto& wrong : cases) {
     const Outcome outcome = dive(wrong.arguments, wrong.scene);

@@ -48,6 +48,8 @@ SETTINGS = {
     "person": Setting("nobody", "the diver: nobody (its eyes are on the shark at once), or a person in a window or a headset, one run after "
                       "the other; recordings and markers in OUT/person", words=["nobody", "window", "headset"]),
     "person_bearing_deg": Setting(90.0, "how far to the side of the shark a person faces at the start", -180.0, 180.0),
+    "person_spread_deg": Setting(30.0, "by how much more or less, at most, by the seed", 0.0, 90.0),
+    "person_side": Setting("by_seed", "the side on which the shark is then", words=["by_seed", "port", "starboard"]),
     "gaze_within_deg": Setting(5.0, "a person's gaze meets the shark within this angle, or half a metre of its middle", 0.5, 45.0),
     "gaze_held_s": Setting(0.15, "for so long", 0.0, 5.0),
     "find_s": Setting(60.0, "that a person has to find the shark", 1.0, 600.0),

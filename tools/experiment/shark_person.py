@@ -1,7 +1,8 @@
 """The shark's task with a person as the diver: `neritic dive` in a headset or a window shows the scene, serves it, and records
 it with its markers; this end plays the shark, tells the ROV its place and judges, by the same clock and the same rules.
 
-The shark stands until the person's gaze (a headset's eyes, else where the face points) has rested on it; time counts from then.
+The shark stands until the person's gaze (a headset's eyes, in a window the middle of the view) has rested on it; time counts
+from then.
 """
 import json
 import math
@@ -14,7 +15,7 @@ import time
 import numpy as np
 
 from rotations import matrix
-from scenario import SHIPPED, Failed
+from scenario import SHIPPED, Failed, draw
 from study import now
 
 # The eyes of a diver, from the hips: towards the crown, left, towards the back. The body lies, as divers hover.
@@ -46,13 +47,24 @@ width = 960
 height = 600
 """
 DISPLAYS = {"headset": "openxr", "window": "window"}
+TASK = ("A shark is near. Turn (A, D, or the mouse with its right button held) until it is in the middle of the picture, and keep it "
+        "there: a robot comes between you. W swims ahead.")
 READY_S, CONNECT_S, PATIENCE_S, RADIUS_M = 2.0, 90.0, 30.0, 0.5
 
 
-def diver_of(s):
-    """The scene's part of a diver who is a person, who faces away from the shark by person_bearing_deg."""
+def away_deg(s, seed):
+    """How far to starboard of the shark the person faces at the start: by the seed, so that nobody learns where to turn."""
+    side = s["person_side"]
+    if side == "by_seed":
+        side = "port" if draw(seed, "person_side", 0.0, 1.0) < 0.5 else "starboard"
+    angle = s["person_bearing_deg"] + draw(seed, "person_spread", -1.0, 1.0) * s["person_spread_deg"]
+    return angle if side == "port" else -angle
+
+
+def diver_of(s, seed):
+    """The scene's part of a diver who is a person, who faces away from the shark."""
     return SCENE.format(water=s["water"], models=os.path.join(SHIPPED, "..", "models"), divers=os.path.join(SHIPPED, "..", "divers"),
-                        yaw=-(s["shark_bearing_deg"] + s["person_bearing_deg"]))
+                        yaw=-(s["shark_bearing_deg"] + away_deg(s, seed)))
 
 
 def rests_on(eyes, gaze, shark, within_deg):
@@ -91,7 +103,7 @@ class Person:
         words = ["dive", scene, "--display", DISPLAYS[s["person"]], "--serve", address, "--record", self.record + ".mcap",
                  "--markers", str(self.port), "-q"]
         if s["person"] == "window":
-            words += ["--view", "diver_eyes"]
+            words += ["--swim", "--task", TASK]
         self.program = subprocess.Popen([tools.program, *words], stdout=self.told, stderr=subprocess.STDOUT)
         try:
             self._connect(tools.python(), address)

@@ -100,7 +100,7 @@ def scene_of(s, seed):
     return SCENE.format(
         seed=seed, physics_hz=s["physics_hz"], shark=_scene_of_enu(shark), rov=_scene_of_enu(rov), navigation=s["navigation"],
         current=f'[current]\nkind = "uniform"\nvelocity_m_s = [{s["current_m_s"]!r}, 0, 0]' if s["current_m_s"] else "",
-        diver=shark_person.diver_of(s) if person else DRAWN,
+        diver=shark_person.diver_of(s, seed) if person else DRAWN,
         seen=("" if person else LIGHT.format(**s)) + SEEN.format(fov=CROP_DEG, **s) if looks else "", sonar=SONAR.format(**s) if sounds else "",
         shark_drawn=f'model = "{models}/shark.glb"\nclip = "swim"' if looks or sounds or person else 'shape = "sphere"',
         rov_drawn=f'model = "{models}/rov.glb"' if looks or person else 'shape = "box"\nsize_m = [0.457, 0.254, 0.575]',

@@ -82,6 +82,8 @@ struct DiveFlags {
   std::optional<std::uint64_t> seed;  // instead of the scene's
   std::optional<std::uint32_t> runs;  // with the seeds from there on
   bool quiet = false;                 // no summary but --json's
+  bool swim = false;                  // in a window: the keys swim the first diver at once
+  std::string task;                   // in a window: words for the person; empty: none
   std::string serve;                  // an address; empty: not for other programs
   std::string markers;                // a port or an address; empty: none
   std::filesystem::path keys;         // of its clients

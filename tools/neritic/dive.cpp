@@ -75,7 +75,7 @@ struct Chosen {
 // passes.
 Result<Chosen> choose_sensors(const DiveFlags& flags, const scene::Scene& scene) {
   NERITIC_TRY(const NamedSensors named, named_sensors(flags.sensors, scene));
-  Chosen chosen{first_viewpoint(scene), 0, named.sonars};
+  Chosen chosen{flags.swim ? own_viewpoint(scene) : first_viewpoint(scene), 0, named.sonars};
   const bool camera_named = !flags.sensors.empty() && !named.cameras.empty();
   if (camera_named) chosen.viewpoint = named.cameras.front();  // cameras are the first viewpoints
   if (!flags.view.empty()) {
@@ -229,7 +229,7 @@ void tell(const DiveFlags& flags, const gpu::Device& device, const scene::Camera
 // written is no reason to fail a dive.
 void keep_memory(const DiveFlags& flags, const Screen& screen, const DiveView& view) {
   auto memory = view.memory();
-  if (!screen.window || !memory) return;
+  if (!screen.window || !memory || !flags.task.empty()) return;
   if (flags.size.empty() && screen.window->width() > 0 && screen.window->height() > 0) {
     memory->width = screen.window->width();
     memory->height = screen.window->height();
@@ -281,26 +281,30 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
   if (hud && !screen.headset && !fit_one_window(hud->layouts))
     return refusal("--hud", fmt::format("\"{}\" in a window", flags.hud),
                    "console alone, which shows all of the others, or any of corner, mask, wrist");
-  NERITIC_TRY(const auto view,
-              DiveView::create(*session, screen.shown_on(), screen.overlay.get(), physics.get(),
-                               {.viewpoint = chosen.viewpoint,
-                                .sonars = chosen.sonars,
-                                .summary = flags.headless,
-                                .screenshot = flags.screenshot,
-                                .may_fly = !replay,
-                                .hud = hud,
-                                .governed = governed(flags),
-                                .least_budget_ms = least_budget_ms(screen),
-                                .clock = clock,
-                                .frame_s = 1.0 / camera.rate_hz,
-                                .timeline = !flags.timeline.empty(),
-                                .overlap = flags.fast,
-                                .keep = kept_by_key(flags, recording),
-                                .no_keys_for_files =
-                                    replay ? "a replay is neither saved nor recorded"
-                                           : "nothing moves by physics: there is no state to save",
-                                .memory = screen.memory,
-                                .devices = devices.get()}));
+  NERITIC_TRY(
+      const auto view,
+      DiveView::create(
+          *session, screen.shown_on(), screen.overlay.get(), physics.get(),
+          {.viewpoint = chosen.viewpoint,
+           .sonars = chosen.sonars,
+           .summary = flags.headless,
+           .screenshot = flags.screenshot,
+           .may_fly = !replay,
+           .hud = hud,
+           .governed = governed(flags),
+           .least_budget_ms = least_budget_ms(screen),
+           .clock = clock,
+           .frame_s = 1.0 / camera.rate_hz,
+           .timeline = !flags.timeline.empty(),
+           .overlap = flags.fast,
+           .keep = kept_by_key(flags, recording),
+           .no_keys_for_files = replay ? "a replay is neither saved nor recorded"
+                                       : "nothing moves by physics: there is no state to save",
+           .memory = screen.memory,
+           .devices = devices.get(),
+           .swim = flags.swim && screen.window != nullptr,
+           .units = flags.units == "imperial" ? hud::Units::kImperial : hud::Units::kMetric,
+           .task = flags.task}));
   std::optional<StepFiles> files;
   std::vector<StepSink*> step_sinks;
   std::vector<SampleSource*> sources{&view->pilot()};
@@ -372,7 +376,8 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
                       .interrupted = [&] { return interrupt.requested(); }}});
   const Status status = loop.run();
   keep_memory(flags, screen, *view);
-  // A run that failed prints its summary too.
+  // A run that failed prints its summary too, but a replay that did not begin has none.
+  if (replay && !status.ok() && replay->check.equal_steps() == 0) return status;
   if (replay && !flags.quiet && !flags.json) replay->tell();
   tell(flags, *screen.device, camera, *view, loop, physics.get(),
        files ? &files->recorder() : nullptr, devices.get());

@@ -1,5 +1,6 @@
 #include "tools/neritic/dive_flags.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/core/refusal.hpp"
@@ -81,6 +82,11 @@ bool asks_for_physics_alone(const DiveFlags& flags, const scene::Scene& scene) {
 
 Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
   const std::string flag = physics_flag(flags);
+  if (flags.swim && std::ranges::none_of(scene.objects, [](const scene::Object& object) {
+        return object.human.has_value();
+      }))
+    return refusal("--swim", "a scene without a diver that moves by physics",
+                   "a scene with [[objects]] that have human = \"DIVER.toml\"");
   if (flag.empty()) return {};
   if (!PhysicsWorld::needed(scene)) return flag_without_physics(flag, flags.scene);
   const char* alone = flags.realtime       ? "--realtime"
@@ -106,6 +112,15 @@ Status check_dive_flags(const DiveFlags& flags) {
     return refusal("--fast", "a run in a window", "with --headless (a window follows its screen)");
   if (flags.display != "auto" && flags.headless)
     return refusal("--display", "--headless beside it", "one of the two");
+  if (flags.swim || !flags.task.empty()) {
+    const char* const flag = flags.swim ? "--swim" : "--task";
+    const char* const beside = flags.headless                        ? "--headless"
+                               : flags.display == "openxr"           ? "--display openxr"
+                               : flags.swim && !flags.replay.empty() ? "--replay"
+                                                                     : "";
+    if (*beside != '\0')
+      return refusal(flag, fmt::format("{} beside it", beside), "a dive in a window");
+  }
   if (flags.panels && !flags.headless)
     return refusal("--panels", "a run in a window", "with --headless (a window has them; F2)");
   NERITIC_TRY_STATUS(check_flags_of_displays(flags));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "testbed/view/dive_panels.hpp"
 #include "testbed/view/gauge_panel.hpp"
 #include "testbed/view/map_panel.hpp"
 #include "testbed/view/picker.hpp"
@@ -42,6 +43,27 @@ TEST(RunNumbers, KeepTheStatesNumbersFourTimesASecondAndForgetWhereTheRunWentBac
                            diver_text(std::string("position_m = [4, -12, 0]\n") + kProne));
   numbers.look(*again.world, again.simulation->newest(), 20.0, 0.5);
   EXPECT_EQ(numbers.count(), 1u);
+}
+
+// Few pictures a second of fast time: each value keeps its own time, and two minutes are shown.
+TEST(RunNumbers, AreAsOldAsTheScenesTimeSaysHoweverSeldomTheyCome) {
+  TestDive dive = dive_of("[physics]\n" + rov_text("position_m = [0, -10, 0]\n"));
+  RunNumbers numbers;
+  for (int i = 0; i < 60; ++i) {
+    numbers.look(*dive.world, dive.simulation->newest(), 20.0, 1.0);
+    dive.run(2.5);
+  }
+  ASSERT_EQ(numbers.count(), 49u);
+  EXPECT_NEAR(numbers.age_s(48), 0.0, 1e-9);
+  EXPECT_NEAR(numbers.age_s(47), 2.5, 0.01);
+  EXPECT_NEAR(numbers.age_s(0), 120.0, 0.01);
+}
+
+TEST(Readout, SaysWhoseDepthAndHeadingItIsInTheUnitsOfTheDive) {
+  EXPECT_EQ(readout_words({"diver", 40.34, radians(91.2), 1}, hud::Units::kMetric),
+            "diver  depth 40.3 m  heading 091\u00b0");
+  EXPECT_EQ(readout_words({"camera", -1.5, 0.0, 2}, hud::Units::kImperial),
+            "camera  4.9 ft above water  heading 000\u00b0");
 }
 
 TEST(MapTrails, AreBoundedAndTheMapHoldsThemAll) {

@@ -113,6 +113,28 @@ TEST_F(DivePilotTest, TheLinesNameTheSourceThatHasTheAuthorityNow) {
             "1 sample of joystick not used, live from keyboard");
 }
 
+// The keyboard's hold is a time of the host: ten seconds of the scene pass in it.
+TEST_F(DivePilotTest, InFastTimeTheKeyboardIsNotSilentBetweenTwoFrames) {
+  DivePilot pilot = DivePilot::create(physics_.get()).value();
+  DiveInput input;
+  input.toggle_pilot = true;
+  for (int frame = 0; frame < 6; ++frame) {
+    EXPECT_TRUE(pilot.take(input, -1, 10.0));
+    input = {.move = {0, 0, -1}};
+    ASSERT_TRUE(pilot.poll(physics_->inbox(), time_s_).ok());
+    physics_->follow(0, time_s_ += 2.5);
+    EXPECT_EQ(pilot.troubles(), std::vector<std::string>{}) << frame;
+    EXPECT_NE(doing(pilot).find("piloted"), std::string::npos) << doing(pilot);
+  }
+  // At the usual pace it holds for a second again.
+  EXPECT_TRUE(pilot.take(input, -1, 1.0));
+  ASSERT_TRUE(pilot.poll(physics_->inbox(), time_s_).ok());
+  physics_->follow(0, time_s_ += 2.5);
+  EXPECT_EQ(pilot.troubles(),
+            std::vector<std::string>{"rov: wrench: keyboard is silent, autopilot acts"});
+  EXPECT_NE(doing(pilot).find("the keys are not heard"), std::string::npos) << doing(pilot);
+}
+
 TEST_F(DivePilotTest, WithoutPhysicsNothingIsFlown) {
   DivePilot pilot = DivePilot::create(nullptr).value();
   DiveInput input;

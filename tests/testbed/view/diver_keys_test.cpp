@@ -19,9 +19,9 @@ class DiverKeys : public testing::Test {
     physics_->start();
     wearer_.emplace(*physics_);
   }
-  void hold(const DiveInput& input, double seconds) {
+  void hold(const DiveInput& input, double seconds, const std::optional<Quat>& eyes = {}) {
     for (const double end_s = time_s_ + seconds; time_s_ < end_s; time_s_ += 0.05) {
-      wearer_->take({}, input);
+      wearer_->take({}, input, eyes);
       ASSERT_TRUE(wearer_->poll(physics_->inbox(), time_s_).ok());
       physics_->follow(0, time_s_);
     }
@@ -77,6 +77,54 @@ TEST_F(DiverKeys, LettingGoGivesTheDiverBack) {
   wearer_->swim_by_keys(true);
   hold({.move = {0, 0, -1}}, 1.0);
   EXPECT_EQ(phase(DiverGroup::kBody), GroupPhase::kLive);
+}
+
+// The swimmer's face points down, the view does not.
+TEST_F(DiverKeys, TheGazeIsWhereTheMiddleOfTheOwnViewPoints) {
+  hold({}, 1.0);
+  const auto gaze = [&] { return diver::world_from_ned(state().human.life.vitals.gaze_ned); };
+  EXPECT_LT(gaze().y, -0.5);
+  EXPECT_EQ(state().human.life.vitals.measured & diver::kGazeMeasured, 0u);
+  wearer_->swim_by_keys(true);
+  for (const double yaw : {0.4, -1.9}) {
+    const Quat eyes = from_yaw_pitch_roll(yaw, 0.1, 0.0);
+    hold({}, 0.5, eyes);
+    EXPECT_NE(state().human.life.vitals.measured & diver::kGazeMeasured, 0u);
+    EXPECT_LT(glm::distance(gaze(), eyes * Vec3(0, 0, -1)), 1e-6) << yaw;
+  }
+  EXPECT_EQ(phase(DiverGroup::kGaze), GroupPhase::kLive);
+  hold({}, 0.5);  // another view
+  EXPECT_EQ(phase(DiverGroup::kGaze), GroupPhase::kChosen);
+  hold({}, 0.5, Quat(1, 0, 0, 0));
+  EXPECT_EQ(phase(DiverGroup::kGaze), GroupPhase::kLive);
+  wearer_->swim_by_keys(false);
+  hold({}, 0.5);
+  EXPECT_EQ(phase(DiverGroup::kGaze), GroupPhase::kChosen);
+}
+
+TEST_F(DiverKeys, InTheOwnViewTurningMovesNobodyAndAheadIsWhereTheViewPoints) {
+  wearer_->swim_by_keys(true);
+  const Vec3 start = place();
+  const Quat eyes = from_yaw_pitch_roll(radians(-70.0), radians(20.0), 0.0);
+  hold({.move = {1, 0, 0}, .turn = 1.0}, 8.0, eyes);
+  EXPECT_LT(glm::distance(start, place()), 0.5);
+  hold({.move = {0, 0, -1}}, 25.0, eyes);
+  const Vec3 swum = place() - start;
+  EXPECT_GT(glm::dot(swum, from_yaw_pitch_roll(radians(-70.0), 0.0, 0.0) * Vec3(0, 0, -1)), 4.0);
+  EXPECT_LT(std::abs(swum.y), 1.5);
+}
+
+// Ten seconds of the scene in one of the host, in which a few frames come.
+TEST_F(DiverKeys, InFastTimeTheKeysAreNotSilentBetweenTwoFrames) {
+  wearer_->swim_by_keys(true);
+  for (int frame = 0; frame < 6; ++frame) {
+    wearer_->take({}, {.move = {0, 0, -1}}, {}, 10.0);
+    ASSERT_TRUE(wearer_->poll(physics_->inbox(), time_s_).ok());
+    physics_->follow(0, time_s_ += 2.5);
+    if (frame == 0) continue;  // limbs follow the claim with the next frame
+    EXPECT_EQ(phase(DiverGroup::kBody), GroupPhase::kLive) << frame;
+  }
+  EXPECT_EQ(state().groups[static_cast<std::size_t>(DiverGroup::kBody)].losses, 0u);
 }
 
 }  // namespace

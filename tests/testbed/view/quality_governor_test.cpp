@@ -173,6 +173,9 @@ TEST(QualityGovernor, SaysAllThatItGaveUp) {
   EXPECT_THAT(words, testing::ElementsAre("drawn at 36 %   1 ping of 8",
                                           "light 4 of 4 lower, no forward scatter"));
   EXPECT_THAT(given_up({.view_scale = 0.9}), testing::ElementsAre("drawn at 90 %"));
+  EXPECT_TRUE(given_up({.ping_every = 8}, false).empty());
+  EXPECT_THAT(given_up({.view_scale = 0.9, .ping_every = 8}, false),
+              testing::ElementsAre("drawn at 90 %"));
   for (const Quality& quality : quality_rungs().subspan(1)) EXPECT_FALSE(given_up(quality).empty());
 }
 

@@ -11,6 +11,7 @@
 #include "testbed/view/dive_view.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/support/support.hpp"
+#include "tests/testbed/simulation/dives.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -164,6 +165,43 @@ TEST(Viewpoints, TheMouseLooksRoundOnAMountedCameraWhichGoesOnRiding) {
   const Vec3 ahead =
       inverse(straight).rotation * (choice.world_from_view().rotation * Vec3(0.0, 0.0, -1.0));
   EXPECT_NEAR(std::atan2(ahead.x, -ahead.z), 0.5, 1e-9);  // 200 px to starboard
+}
+
+// As a head: in the world and level, while the body rides on below it.
+TEST(Viewpoints, TheOwnViewOfASwumDiverTurnsByKeysAndMouse) {
+  const scene::Scene scene =
+      load_text(kStillWater + diver_text(std::string("position_m = [0, -12, 0]\n") + kProne) +
+                "[[objects.cameras]]\nname = \"eyes\"\nposition_m = [0, 0.66, -0.16]\npitch_deg = "
+                "80\nroll_deg = 5\n")
+          .value();
+  ViewChoice choice(scene, own_viewpoint(scene));
+  ASSERT_EQ(choice.viewpoint().name, "diver_eyes");
+  const int diver = choice.carrier();
+  const scene::MotionSource still(scene);
+  const auto show = [&](const DiveInput& input, int swum) {
+    choice.take(input, 0.2, true, swum);
+    choice.follow(still, 0.0);
+  };
+  show({}, -1);
+  EXPECT_FALSE(choice.world_from_eyes());
+  show({}, diver);
+  show({}, diver);
+  ASSERT_TRUE(choice.world_from_eyes());
+  const auto angles = [&] {
+    const Vec3 ahead = *choice.world_from_eyes() * Vec3(0, 0, -1);
+    return Vec2(degrees(std::atan2(ahead.x, -ahead.z)), degrees(std::asin(ahead.y)));
+  };
+  EXPECT_NEAR((*choice.world_from_eyes() * Vec3(1, 0, 0)).y, 0.0, 1e-9);
+  const Vec2 begin = angles();
+  show({.move = {1, 0, 0}}, diver);  // D
+  show({.turn = 1.0}, diver);        // Right
+  EXPECT_NEAR(std::remainder(angles().x - begin.x, 360.0), 18.0, 1e-6);
+  EXPECT_NEAR(angles().y, begin.y, 1e-6);
+  show({.look_px = {-40, -40}}, diver);
+  EXPECT_NEAR(std::remainder(angles().x - begin.x, 360.0), 18.0 - degrees(0.1), 1e-6);
+  EXPECT_NEAR(angles().y, begin.y + degrees(0.1), 1e-6);
+  show({.view_step = 1}, diver);
+  EXPECT_FALSE(choice.world_from_eyes());
 }
 
 TEST(Viewpoints, AnUnknownViewIsRefusedWithTheKnownOnes) {

@@ -207,6 +207,12 @@ void add_dive(CLI::App& app, CommandLine& line) {
   command->add_option(
       "--view", flags->view,
       "begins at this view: a camera's name, chase:PARTICIPANT or free (key V changes it)");
+  command->add_flag("--swim", flags->swim,
+                    "in a window: begins in the own view of the first diver, whom the keys swim at "
+                    "once, as after key P");
+  command->add_option("--task", flags->task,
+                      "in a window: what the person is to do, shown in place of the operator's "
+                      "panels (F2 shows those); the window's looks are not kept");
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
   command->add_flag("--validate", flags->validation,
                     "runs with Vulkan validation; any message is a failure");
