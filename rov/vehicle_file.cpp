@@ -222,4 +222,13 @@ void drive(const VehicleFile& file, Inputs& inputs, const BatteryState* battery)
     inputs.thruster_n[i] = file.curve->realised_n(inputs.thruster_n[i], voltage_v);
 }
 
+std::pair<double, double> thruster_limits_n(const VehicleFile& file, std::size_t thruster) {
+  constexpr double kAny_n = 1e9;
+  if (file.curve)
+    return {file.curve->realised_n(-kAny_n, file.voltage_v),
+            file.curve->realised_n(kAny_n, file.voltage_v)};
+  const Thruster& limits = file.parameters.thrusters[thruster];
+  return {limits.min_n, limits.max_n};
+}
+
 }  // namespace neritic::rov

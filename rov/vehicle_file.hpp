@@ -35,5 +35,8 @@ Result<VehicleFile> parse_vehicle(std::string_view text, const std::string& name
 // Commands in newtons as the speed controllers realise them: dead band, table, saturation. With a
 // battery at its voltage, and none once it is empty.
 void drive(const VehicleFile& file, Inputs& inputs, const BatteryState* battery = nullptr);
+// Least and most force that any command gives a thruster, at the file's voltage: the table's ends,
+// or the file's limits.
+std::pair<double, double> thruster_limits_n(const VehicleFile& file, std::size_t thruster);
 
 }  // namespace neritic::rov

@@ -109,6 +109,9 @@ struct GroupState {
   }
 };
 
+// The source of a dive's own keys.
+inline constexpr std::string_view kKeyboard = "keyboard";
+
 // In step `step`, which lasts dt_s.
 GroupState next_group(const GroupState& before, const GroupControl& control, std::uint64_t step,
                       double dt_s);

@@ -328,8 +328,10 @@ void PhysicsWorld::begin_part(const StepCall& call, std::size_t i) const {
   VehicleState& state = call.after.vehicles()[i];
   const double from_s = time_at(call.time, own.part.from);
   const Instants& control = vehicle.kind.model.instants.front();
-  if (control.at(call.time.step, own.part.from) && !steer(i, call, from_s))
-    ++state.body.refused_inputs;
+  const bool due =
+      control.at(call.time.step, own.part.from) ||
+      (own.part.from == 0.0 && forces_came(call.inputs.vehicles()[i], state, call.time.step));
+  if (due && !steer(i, call, from_s)) ++state.body.refused_inputs;
   own.acting =
       acting_on(vehicle, call.inputs.vehicles()[i], state, from_s, length_s(call.time, own.part));
   own.free = free_step(part_step(call, i));

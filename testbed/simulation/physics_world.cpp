@@ -288,7 +288,7 @@ const rov::BatteryState* PhysicsWorld::battery(const PhysicsState& state,
 StateFormat PhysicsWorld::state_format() const {
   std::vector<std::string> names{"simulation"};
   names.insert(names.end(), sources_.begin(), sources_.end());
-  return {scene_hash_, step_s_, start(), start_inputs(), std::move(names)};
+  return {scene_hash_, seed_, step_s_, start(), start_inputs(), std::move(names)};
 }
 
 std::unique_ptr<PhysicsSimulation> PhysicsWorld::simulation(sim::SimulationOptions options,

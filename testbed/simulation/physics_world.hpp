@@ -173,6 +173,8 @@ class PhysicsWorld {
   void choose_inputs(const scene::Scene& scene);
   Status check_start(const scene::Scene& scene, const std::string& name,
                      const sim::BodyShape& shape, const Pose& start) const;
+  bool forces_came(const VehicleInputs& inputs, const VehicleState& state,
+                   std::uint64_t step) const;
   bool steer(std::size_t index, const StepCall& call, double time_s) const;
   void sense(std::size_t index, const rov::Vec6& contact, double from_s, double to_s,
              PhysicsState& state) const;

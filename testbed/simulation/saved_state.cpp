@@ -14,16 +14,16 @@ static_assert(std::endian::native == std::endian::little, "numbers are copied as
 
 constexpr std::string_view kMagic = "NRTCSAVE";
 constexpr std::size_t kLongestName = 255;
-constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersion = 5;
 
 struct Header {
   char magic[8];
   std::uint32_t version, sources;
-  std::uint64_t scene_hash, layout_hash, step;
+  std::uint64_t scene_hash, seed, layout_hash, step;
   double time_s;
   std::uint64_t state_bytes, input_bytes;
 };
-static_assert(sizeof(Header) == 64);
+static_assert(sizeof(Header) == 72);
 
 std::uint64_t checksum(std::span<const std::byte> bytes) {
   Hash64 hash;
@@ -57,6 +57,9 @@ Status check_header(const Header& header, const StateFormat& format, std::size_t
   if (header.version != kVersion)
     return bad_input("{}: a saved state of version {}; accepted: {}", name, header.version,
                      kVersion);
+  if (header.seed != format.seed)
+    return bad_input("{}: a state of seed {}; accepted: one of seed {}, as here", name, header.seed,
+                     format.seed);
   if (header.scene_hash != format.scene_hash)
     return bad_input("{}: a state of another scene, whose hash is {:016x}; accepted: {:016x}", name,
                      header.scene_hash, format.scene_hash);
@@ -124,6 +127,7 @@ std::vector<std::byte> encode_state(const StateFormat& format, const SavedState&
                 kVersion,
                 static_cast<std::uint32_t>(saved.sources.size()),
                 format.scene_hash,
+                format.seed,
                 format.layout_hash(),
                 saved.step,
                 sim::StepTime{saved.step, format.step_s}.time_s(),

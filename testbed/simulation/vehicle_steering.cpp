@@ -41,6 +41,15 @@ bool PhysicsWorld::control_due(std::size_t vehicle, std::uint64_t step) const {
   return periods(step) != periods(step - 1);
 }
 
+// Forces of thrusters are not the autopilot's, whose rate the file gives: they act in the step in
+// which they come.
+bool PhysicsWorld::forces_came(const VehicleInputs& inputs, const VehicleState& state,
+                               std::uint64_t step) const {
+  return inputs.wrench_by_thrusters != 0 && inputs.of(VehicleGroup::kWrench).heard_step == step &&
+         inputs.of(VehicleGroup::kWrench).heard > 0 &&
+         authority_of(inputs, state, VehicleGroup::kWrench) == Authority::kLive;
+}
+
 // New commands for the thrusters: of a pilot's wrench, else of a setpoint from outside, else of the
 // mission. False where the commands are no numbers: the last ones hold.
 bool PhysicsWorld::steer(std::size_t index, const StepCall& call, double time_s) const {
@@ -62,6 +71,10 @@ bool PhysicsWorld::steer(std::size_t index, const StepCall& call, double time_s)
   if (piloted && inputs.wrench_by_thrusters != 0) {
     rov::Inputs commands;
     commands.thruster_n = inputs.thrusters.force_n;
+    for (std::size_t i = 0; !vehicle.file.curve && i < vehicle.vehicle.thruster_count; ++i) {
+      const auto [least_n, most_n] = rov::thruster_limits_n(vehicle.file, i);
+      commands.thruster_n[i] = std::clamp(commands.thruster_n[i], least_n, most_n);
+    }
     rov::drive(vehicle.file, commands, battery(call.after, index));
     if (!sim::all_finite(commands)) return false;
     drift_with(known, state.mission);

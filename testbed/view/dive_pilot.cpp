@@ -40,7 +40,7 @@ bool DivePilot::had_authority() const {
       vehicles[vehicle_].groups[static_cast<std::size_t>(VehicleGroup::kWrench)];
   const auto sources = physics_->inbox().source_names();
   return wrench.authority == Authority::kLive && wrench.source < sources.size() &&
-         sources[wrench.source] == "keyboard";
+         sources[wrench.source] == kKeyboard;
 }
 
 // Whether the keys fly the vehicle in the newest state, as far as that can know of them.
@@ -54,7 +54,7 @@ bool DivePilot::heard() const {
 Result<DivePilot> DivePilot::create(LivePhysics* physics, bool may_fly) {
   DivePilot pilot(physics);
   if (may_fly && physics && !physics->world().vehicles().empty()) {
-    NERITIC_TRY(pilot.keyboard_, physics->inbox().open("keyboard"));
+    NERITIC_TRY(pilot.keyboard_, physics->inbox().open(std::string(kKeyboard)));
   }
   return pilot;
 }

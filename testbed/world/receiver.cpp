@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstring>
 
 #include "engine/core/ros_frames.hpp"
@@ -12,7 +13,8 @@ Receiver::Receiver(const PhysicsWorld& world, std::uint64_t seed, std::size_t st
       newest(world.streams().size()),
       kept(streams, 0),
       outputs_(OutputSamples::all(world)),
-      seed_(seed) {}
+      seed_(seed),
+      newest_image_ns_(streams) {}
 
 Status Receiver::accept(const sim::Snapshot<PhysicsState>& step, std::span<const Sample> outputs) {
   // The next loop begins with the step that the last one ended with.
@@ -43,7 +45,11 @@ void Receiver::receive(std::span<const Sample> outputs, TimeNs shift_ns) {
 }
 
 void Receiver::arrive(const Reading& reading) {
-  newest[reading.stream] = reading;
+  // One that was overtaken on its way comes, and is not the newest.
+  Reading& last = newest[reading.stream];
+  if (last.count == 0 ||
+      std::pair(reading.stamp_ns, reading.sequence) >= std::pair(last.stamp_ns, last.sequence))
+    last = reading;
   if (!kept[reading.stream]) return;
   if (arrived.size() == World::kMostKept) {
     arrived.pop_front();
@@ -65,9 +71,15 @@ void Receiver::take(WorldImage image) {
 }
 
 void Receiver::arrive(std::unique_ptr<WorldImage> image) {
-  // Without someone who wants them all the newest makes the one before it go.
-  if (!kept[image->stream])
+  // Without someone who wants them all the newest makes the one before it go, and one that it has
+  // overtaken.
+  std::optional<TimeNs>& last_ns = newest_image_ns_[image->stream];
+  const bool overtaken = last_ns && image->stamp_ns < *last_ns;
+  if (!kept[image->stream]) {
+    if (overtaken) return;
     std::erase_if(images, [&](const auto& one) { return one->stream == image->stream; });
+  }
+  if (!overtaken) last_ns = image->stamp_ns;
   constexpr std::size_t kMostImages = 64;
   if (images.size() == kMostImages) {
     images.pop_front();
@@ -81,13 +93,14 @@ void Receiver::deliver(TimeNs now_ns) {
   while (images_.due(now_ns)) arrive(images_.take());
 }
 
-void Receiver::forget() {
+void Receiver::forget(std::optional<std::uint64_t> seen) {
   for (Reading& reading : newest) reading = {};
   arrived.clear();
   images.clear();
   readings_.clear();
   images_.clear();
-  last_step_.reset();
+  std::ranges::fill(newest_image_ns_, std::nullopt);
+  last_step_ = seen;
 }
 
 Status ImageReceiver::accept(const ImageSample& image) {

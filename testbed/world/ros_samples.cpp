@@ -1,14 +1,16 @@
 #include "testbed/world/ros_samples.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/ros_frames.hpp"
 
 namespace neritic::testbed::ros {
 namespace {
 
-// The three things done with each field of a payload: listed, written or read. Each describe()
-// below names a payload's fields once for all three.
+// The four things done with each field of a payload: listed, written, read or checked. Each
+// describe() below names a payload's fields once for all four.
 struct Lister {
   std::vector<Field>& fields;
   template <class T>
@@ -147,6 +149,60 @@ struct Reader {
   void rotations(const char*, T& values, const Both& both) {
     for (Quat& value : values) value = both(quat());
   }
+};
+
+// Numbers that a Reader would have to bend: the first of them is refused.
+struct Checker {
+  const double* at;
+  std::string_view where;
+  Status status;
+  void whole(const char* name, double least, double most) {
+    const double x = *at++;
+    if (!status.ok() || (x >= least && x <= most && x == std::floor(x))) return;
+    status = refusal(fmt::format("{}: {}", where, name), fmt::format("{}", x),
+                     most == 1.0 ? std::string("0 or 1")
+                                 : fmt::format("a whole number from {} to {}", least, most));
+  }
+  template <class T>
+  void number(const char* name, const T&) {
+    if constexpr (std::is_floating_point_v<T>)
+      ++at;
+    else
+      whole(name, 0.0, kMostCount);
+  }
+  template <class T>
+  void choice(const char* name, const T&, T last) {
+    whole(name, 0.0, static_cast<double>(last));
+  }
+  template <class T, class To, class From>
+  void vector(const char*, const T&, const To&, const From&) {
+    at += 3;
+  }
+  template <class T, class To, class From>
+  void rotation(const char*, const T&, const To&, const From&) {
+    at += 4;
+  }
+  template <class T, class Both>
+  void angle(const char*, const T&, const Both&) {
+    ++at;
+  }
+  template <class T>
+  void bits(const char* name, const T&, std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count; ++i) whole(name, 0.0, 1.0);
+  }
+  template <class T>
+  void list(const char*, const T& values) {
+    at += std::size(values);
+  }
+  template <class T>
+  void words(const char* name, const T& values) {
+    for (std::size_t i = 0; i < std::size(values); ++i) whole(name, 0.0, 4294967295.0);
+  }
+  template <class T, class Both>
+  void rotations(const char*, const T& values, const Both&) {
+    at += 4 * std::size(values);
+  }
+  static constexpr double kMostCount = 9e15;
 };
 
 // The conversions: those of vectors and rotations there and back, those of angles both ways.
@@ -440,6 +496,13 @@ Payload read_values(PayloadKind kind, std::span<const double> values) {
   Reader reader{values.data()};
   std::visit([&](auto& p) { describe(reader, p, &p); }, payload);
   return payload;
+}
+
+Status check_values(PayloadKind kind, std::span<const double> values, std::string_view where) {
+  const Payload payload = empty_payload(kind);
+  Checker checker{values.data(), where, {}};
+  std::visit([&](const auto& p) { describe(checker, p, &p); }, payload);
+  return checker.status;
 }
 
 std::string frame_of(PayloadKind kind, const std::string& owner) {

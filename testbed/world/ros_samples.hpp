@@ -26,6 +26,8 @@ inline constexpr std::size_t kMostReadingValues = 32;
 
 // Precondition: value_count() of its kind fit. Returns that count.
 std::size_t write_values(const Payload& payload, std::span<double> out);
+// kBadInput where a number of a choice, a count or bits is none of those that there are.
+Status check_values(PayloadKind kind, std::span<const double> values, std::string_view where);
 // Rotations are made unit. Precondition: value_count(kind) values, all finite.
 Payload read_values(PayloadKind kind, std::span<const double> values);
 

@@ -24,8 +24,7 @@ std::vector<AgentInfo> agents_of(const PhysicsWorld& world) {
                    .takes_pwm = vehicle.file.curve.has_value(),
                    .has_mission = vehicle.mission.has_value()};
     for (std::size_t i = 0; i < vehicle.vehicle.thruster_count; ++i)
-      info.thruster_n.emplace_back(vehicle.vehicle.thrusters[i].min_n,
-                                   vehicle.vehicle.thrusters[i].max_n);
+      info.thruster_n.push_back(rov::thruster_limits_n(vehicle.file, i));
     out.push_back(std::move(info));
   }
   for (const PhysicsHuman& human : world.humans())
@@ -148,6 +147,7 @@ Result<std::unique_ptr<World>> World::attach(LivePhysics& physics, const scene::
   parts.image_receiver = std::make_unique<ImageReceiver>(
       *parts.receiver, static_cast<std::uint32_t>(parts.first_image), false);
   NERITIC_TRY(parts.consumer, ImageConsumer::create(scene, {}, *parts.image_receiver));
+  parts.find_holders();
   return world;
 }
 
@@ -206,10 +206,10 @@ Result<std::size_t> World::agent(const std::string& name) const {
 void World::receive(std::span<const Sample> outputs) {
   Parts& parts = *parts_;
   if (parts.restored != parts.physics->restored()) {
-    // By the display's keys: who commands what, and all that is on its way, belong to another time.
+    // By the display's keys: all that is on its way belongs to another time.
     parts.restored = parts.physics->restored();
     parts.receiver->forget();
-    parts.holders.clear();
+    parts.find_holders();
     parts.messages.clear();
   } else {
     parts.receiver->receive(outputs);
@@ -239,12 +239,13 @@ Result<Instruments> World::instruments(const std::string& name) const {
   return out;
 }
 
-Status World::tick(std::uint64_t steps) {
+Status World::tick(std::uint64_t steps, const std::function<bool()>& stop) {
   Parts& parts = *parts_;
   NERITIC_CHECK(parts.loop, "an attached world goes on by itself");
   for (std::uint64_t i = 0; i < steps; ++i) {
     NERITIC_TRY_STATUS(parts.loop->turn());
     if (parts.loop->stopped()) return parts.loop->end({});
+    if (stop && stop()) break;
   }
   parts.receiver->deliver(time_ns());
   return parts.device ? check_validation(*parts.device) : Status();
@@ -269,6 +270,10 @@ std::vector<Reading> World::take_arrived() {
   return out;
 }
 
+std::size_t World::arrived() const {
+  return parts_->receiver->arrived.size();
+}
+
 std::uint64_t World::dropped() const {
   return parts_->receiver->dropped;
 }
@@ -281,6 +286,9 @@ Status World::set_link(std::uint32_t stream, const LinkOptions& link) {
        {std::pair("delay_s", link.delay_s), {"jitter_s", link.jitter_s}})
     if (!(value >= 0.0 && value <= kMost_s))
       return refusal(name + ": " + word, fmt::format("{}", value), "0 to 3600 s");
+  if (parts_->streams[stream].sort == StreamInfo::Sort::kInput)
+    return refusal("link: " + name, "a stream of inputs, whose commands act with the next step",
+                   "one of readings or images");
   if (!(link.loss >= 0.0 && link.loss <= 1.0))
     return refusal(name + ": loss", fmt::format("{}", link.loss), "a share from 0 to 1");
   parts_->receiver->links[stream] = link;
@@ -353,18 +361,20 @@ Status World::restore(std::span<const std::byte> bytes) {
   Parts& parts = *parts_;
   if (!parts.owned_physics)
     return refusal("restore", "a dive with a display", "its own keys, or `neritic serve`");
-  if (recording()) return refusal("restore", "a recording that runs", "stop_recording() before it");
+  if (recording())
+    return refusal("restore", "a recording that runs", "the recording's end before it");
   NERITIC_TRY(const SavedState saved,
               parse_state(parts.world().state_format(), bytes, "the saved state"));
   parts.end_loop();
   const Status status = parts.physics->go_to(saved);
   if (status.ok()) {
-    parts.receiver->forget();
+    // The readings of the saved step came before it was saved.
+    parts.receiver->forget(saved.step);
     // Devices begin anew: their next sample may be captured before their last one was.
     for (const auto& [name, id] : parts.sources)
       NERITIC_CHECK(parts.physics->inbox().open(name).ok(), "{}", name);
     parts.sequences.clear();
-    parts.holders.clear();
+    parts.find_holders();
     parts.messages.clear();
     const auto modems = parts.world().modems().all();
     for (std::size_t i = 0; i < modems.size(); ++i)
@@ -381,7 +391,7 @@ Status World::record(const std::filesystem::path& path) {
   RecordingSwitch& recording = parts_->receiver->recording;
   if (recording.on())
     return refusal("record", "a recording that runs, " + recording.file().string(),
-                   "stop_recording() before it");
+                   "that recording's end before it");
   NERITIC_TRY(RecordingOptions options, recording_of_scene(parts_->path));
   std::filesystem::path base = path;
   if (base.extension() == ".mcap") base.replace_extension();
@@ -409,6 +419,52 @@ void World::Parts::begin_loop() {
   if (consumer) made.sensors = LoopSensors{.session = session.get(), .consumers = {&*consumer}};
   loop.emplace(std::move(made));
   loop->begin();
+}
+
+// Those of the state: a command that acts in it can be released or followed by another one, whoever
+// gave it. A dive's own keys give back what they took.
+void World::Parts::find_holders() {
+  holders.clear();
+  const auto names = physics->inbox().source_names();
+  const auto find = [&](OwnerSort sort, std::size_t owner, const auto& now, const auto& chosen,
+                        const auto& hold_s) {
+    for (std::uint64_t group = 0; group < now.size(); ++group) {
+      const SourceId source = static_cast<SourceId>(now[group].source);
+      if (now[group].authority != Authority::kLive) continue;
+      if (chosen[group].authority == Authority::kLive && chosen[group].source == source) continue;
+      if (attached() && source < names.size() && names[source] == kKeyboard) continue;
+      const StreamId events =
+          world().streams().id(sort, static_cast<std::uint32_t>(owner), PayloadKind::kEvent);
+      holders[{events, group}] = {source, hold_s(group)};
+    }
+  };
+  const PhysicsInputs& start = world().start_inputs();
+  const auto find_all = [&](const auto& vehicles, const auto& humans, const auto& objects,
+                            const auto& groups_of, const auto& hold_of) {
+    const auto find_each = [&](OwnerSort sort, const auto& all, const auto& chosen) {
+      for (std::size_t i = 0; i < all.size(); ++i)
+        find(sort, i, groups_of(all[i]), chosen[i].control,
+             [&](std::uint64_t group) { return hold_of(all[i], group); });
+    };
+    find_each(OwnerSort::kVehicle, vehicles, start.vehicles());
+    find_each(OwnerSort::kDiver, humans, start.humans());
+    find_each(OwnerSort::kObject, objects, start.objects());
+  };
+  if (attached()) {
+    // The thread that steps owns the inputs. Its state does not say for how long a source holds:
+    // the next command of the same source says it anew.
+    const PhysicsState& state = newest().state;
+    find_all(
+        state.vehicles(), state.humans(), state.objects(),
+        [](const auto& one) -> const auto& { return one.groups; },
+        [](const auto&, std::uint64_t) { return -1.0; });
+    return;
+  }
+  const PhysicsInputs& inputs = physics->simulation().inputs();
+  find_all(
+      inputs.vehicles(), inputs.humans(), inputs.objects(),
+      [](const auto& one) -> const auto& { return one.control; },
+      [](const auto& one, std::uint64_t group) { return one.control[group].hold_s; });
 }
 
 void World::Parts::end_loop() {

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -141,7 +142,9 @@ class World {
 
   // So many steps, in lock-step with the caller. An Error of a device, a source or a recording: the
   // steps until then were taken.
-  Status tick(std::uint64_t steps = 1);
+  Status tick(std::uint64_t steps = 1) { return tick(steps, {}); }
+  // stop is asked after each step; true ends the tick there.
+  Status tick(std::uint64_t steps, const std::function<bool()>& stop);
 
   // The newest reading of each stream that has arrived, by stream; count 0 where there is none.
   std::span<const Reading> newest() const;
@@ -150,8 +153,10 @@ class World {
   static constexpr std::size_t kMostKept = 1 << 16;
   Status keep(std::uint32_t stream, bool on);
   std::vector<Reading> take_arrived();
+  std::size_t arrived() const;  // that wait for take_arrived()
   std::uint64_t dropped() const;
-  // On arrival only: what was measured stays. kBadInput for negative times or shares.
+  // On arrival only: what was measured stays. kBadInput for negative times or shares, and for a
+  // stream of inputs.
   Status set_link(std::uint32_t stream, const LinkOptions& link);
 
   // Images of that stream from the next tick on, at rate_hz or the sensor's own (0). The first one
@@ -195,7 +200,8 @@ class World {
   // An attached world: samples that left its physics, in their order, with simulated times.
   void receive(std::span<const Sample> outputs);
 
-  // The whole state as bytes, and back at once; images and readings on their way are dropped.
+  // The whole state as bytes, and back at once; images and readings on their way are dropped. A
+  // command that acted when it was saved goes on acting, until release() or another command.
   std::vector<std::byte> save() const;
   Status restore(std::span<const std::byte> bytes);
 

@@ -117,9 +117,10 @@ Result<Said> object_command(const PhysicsObject& object, const std::string& wher
 // A message of bytes.
 Result<ModemSend> message_of(const std::string& where, std::uint64_t modems,
                              std::span<const double> values) {
+  if (values.empty()) return refusal(where, "no number of a modem", "one, and its bytes after it");
   if (values.size() < 2 || values.size() > kModemBytes + 1)
-    return refusal(where, fmt::format("{} numbers", values.size()),
-                   fmt::format("the number of a modem and 1 to {} bytes", kModemBytes));
+    return refusal(where, fmt::format("{} bytes", values.size() - 1),
+                   fmt::format("1 to {}", kModemBytes));
   const auto whole = [](double value, double most) {
     return value >= 0.0 && value <= most && value == std::floor(value);
   };
@@ -273,6 +274,7 @@ Status World::command(const std::string& name, const std::string& kind,
     owner -= static_cast<std::uint32_t>(vehicles + humans);
     NERITIC_TRY(said, object_command(world.objects()[owner], where, kind, values));
   }
+  NERITIC_TRY_STATUS(ros::check_values(said.kind, said.values, where));
   const StreamId stream = world.streams().id(sort, owner, said.kind);
   const StreamId events = world.streams().id(sort, owner, PayloadKind::kEvent);
   NERITIC_TRY(const SourceId source, parts.source(from));
@@ -331,6 +333,7 @@ Status World::inject(const std::string& name, std::span<const double> values,
   const std::size_t count = ros::value_count(kind);
   NERITIC_TRY_STATUS(check_count(name, values.size(), count, count));
   NERITIC_TRY_STATUS(check_finite(name, values));
+  NERITIC_TRY_STATUS(ros::check_values(kind, values, name));
   if (stamp_s && !(std::abs(*stamp_s) <= 1e9))
     return refusal(name + ": stamp", fmt::format("{}", *stamp_s), "seconds of simulated time");
   NERITIC_TRY(const SourceId source, parts.source(from));

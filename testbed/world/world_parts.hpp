@@ -29,11 +29,12 @@ class Receiver final : public StepSink {
   // Between two ticks.
   void take(WorldImage image);
   void deliver(TimeNs now_ns);
-  void forget();  // what arrived or is on its way
+  // What arrived or is on its way. seen: the step whose readings do not come again.
+  void forget(std::optional<std::uint64_t> seen = {});
 
   RecordingSwitch recording;
   std::vector<LinkOptions> links;  // by stream; images after the others
-  std::vector<Reading> newest;     // by stream of the table
+  std::vector<Reading> newest;     // by stream of the table, by the time of measurement
   std::vector<char> kept;          // by stream
   std::deque<Reading> arrived;
   std::deque<std::unique_ptr<WorldImage>> images;
@@ -46,6 +47,7 @@ class Receiver final : public StepSink {
   std::vector<StreamId> outputs_;
   std::uint64_t seed_ = 0;
   std::optional<std::uint64_t> last_step_;
+  std::vector<std::optional<TimeNs>> newest_image_ns_;  // by stream: that arrived
   OnTheWay<Reading> readings_;
   OnTheWay<std::unique_ptr<WorldImage>> images_;
 };
@@ -87,7 +89,7 @@ struct World::Parts {
   std::optional<ImageConsumer> consumer;
   std::optional<Loop> loop;
   // For commands: the source of a name, the next sequence by source and stream, and who has the
-  // authority over a group by this world's commands.
+  // authority over a group by a command, of this world or in the state that it goes on from.
   struct Holder {
     SourceId source = 0;
     double hold_s = 0.0;
@@ -102,6 +104,7 @@ struct World::Parts {
   const sim::Snapshot<PhysicsState>& newest() const { return physics->shown_snapshot(); }
   void begin_loop();
   void end_loop();
+  void find_holders();
   Status make_session();
   Status renew_consumer();
   Result<SourceId> source(const std::string& name);

@@ -185,19 +185,24 @@ TEST(SavedState, OfAnotherSceneOrVersionOrDamagedIsRefusedInOneLine) {
   };
   has(refusal(dive_of(saved_scene("failed_thrusters = [2]\n")).world->state_format(), bytes),
       "a state of another scene, whose hash is ");
+  StateFormat seeded = format;
+  ++seeded.seed;
+  has(refusal(seeded, bytes),
+      fmt::format("a state of seed {}; accepted: one of seed {}", format.seed, seeded.seed)
+          .c_str());
   StateFormat fewer = format;
   fewer.state = PhysicsState(1, 1, 1, 1);
   has(refusal(fewer, bytes), "a state of another layout, whose hash is ");
   auto version = bytes;
   version[8] = std::byte{9};
-  has(refusal(format, version), "a saved state of version 9; accepted: 4");
+  has(refusal(format, version), "a saved state of version 9; accepted: 5");
   has(refusal(format, {}), "found no saved state; accepted: bytes that begin with NRTCSAVE");
   for (std::size_t size = 0; size < bytes.size(); size += size < 80 ? 1 : 37)
     ASSERT_NE(refusal(format, std::span(bytes).first(size)), "") << size;
   auto longer = bytes;
   longer.push_back(std::byte{0});
   has(refusal(format, longer), "damaged: its bytes have the hash ");
-  for (std::size_t at = 0; at < bytes.size(); at += at < 64 ? 1 : 11) {
+  for (std::size_t at = 0; at < bytes.size(); at += at < 72 ? 1 : 11) {
     auto damaged = bytes;
     damaged[at] ^= std::byte{4};
     ASSERT_NE(refusal(format, damaged), "") << at;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "engine/core/files.hpp"
 #include "engine/core/math.hpp"
 #include "tests/support/support.hpp"
@@ -111,6 +113,107 @@ TEST_F(WorldTest, GoesOnFromSavedBytesWithTheSameHashes) {
   EXPECT_EQ(world->hash(), hash);
   // Commands are heard again, though time went back.
   EXPECT_TRUE(world->command("rov", "goto", there).ok());
+}
+
+// In this world and in a new one, a command of the saved time ends as if nothing had been restored.
+TEST_F(WorldTest, ACommandThatWasSavedIsReleasedOrFollowedByAnother) {
+  const std::vector<double> up(8, 5.0);
+  const double there[] = {4.0, 3.0, -7.0, 0.0};
+  const auto first = open();
+  ASSERT_TRUE(first->command("rov", "thrusters", up).ok());
+  ASSERT_TRUE(first->tick(20).ok());
+  const auto saved = first->save();
+  for (const bool release : {false, true}) {
+    const auto end = [&](World& world) {
+      EXPECT_TRUE((release ? world.release("rov") : world.command("rov", "goto", there)).ok());
+      EXPECT_TRUE(world.tick(240).ok());
+      return world.hash();
+    };
+    const auto straight = open(), fresh = open();
+    ASSERT_TRUE(straight->command("rov", "thrusters", up).ok());
+    ASSERT_TRUE(straight->tick(20).ok());
+    const std::uint64_t hash = end(*straight);
+    const Truth truth = straight->truth("rov").value();
+    EXPECT_GT(std::abs(truth.thruster_n[0] - 5.0), 1.0);
+    for (World* world : {first.get(), fresh.get()}) {
+      ASSERT_TRUE(world->restore(saved).ok());
+      EXPECT_EQ(end(*world), hash) << release;
+      EXPECT_EQ(world->truth("rov")->thruster_n, truth.thruster_n);
+    }
+  }
+}
+
+TEST_F(WorldTest, ARestoreAtASensorsInstantBringsNoReadingTwice) {
+  const auto world = open();
+  ASSERT_TRUE(world->tick(240).ok());
+  const Reading before = newest(*world, "rov/imu");
+  ASSERT_EQ(before.stamp_ns, world->time_ns());
+  ASSERT_TRUE(world->restore(world->save()).ok());
+  EXPECT_EQ(newest(*world, "rov/imu").count, 0u);
+  const std::uint32_t imu = world->stream("rov/imu").value();
+  ASSERT_TRUE(world->keep(imu, true).ok());
+  ASSERT_TRUE(world->tick(24).ok());
+  const auto arrived = world->take_arrived();
+  ASSERT_FALSE(arrived.empty());
+  EXPECT_EQ(arrived.front().sequence, before.sequence + 1);
+}
+
+TEST_F(WorldTest, TheNewestReadingIsTheOneThatWasMeasuredLast) {
+  const auto world = open();
+  const std::uint32_t imu = world->stream("rov/imu").value();
+  ASSERT_TRUE(world->set_link(imu, {.delay_s = 0.02, .jitter_s = 0.1, .loss = 0.0}).ok());
+  ASSERT_TRUE(world->keep(imu, true).ok());
+  TimeNs last_ns = 0;
+  for (int i = 0; i < 480; ++i) {
+    ASSERT_TRUE(world->tick(1).ok());
+    EXPECT_GE(newest(*world, "rov/imu").stamp_ns, last_ns) << i;
+    last_ns = newest(*world, "rov/imu").stamp_ns;
+  }
+  // Those that were overtaken came all the same.
+  const auto arrived = world->take_arrived();
+  EXPECT_FALSE(std::ranges::is_sorted(arrived, {}, &Reading::sequence));
+}
+
+TEST_F(WorldTest, ForcesOfThrustersActInTheStepInWhichTheyCome) {
+  const auto world = open();
+  for (int i = 0; i < 12; ++i) {
+    const double force_n = 5.0 + i;
+    ASSERT_TRUE(world->command("rov", "thrusters", std::vector<double>(8, force_n)).ok());
+    ASSERT_TRUE(world->tick(1).ok());
+    EXPECT_NEAR(world->truth("rov")->thruster_n[0], force_n, 0.2) << i;
+  }
+  // No command gives more than the agent says.
+  for (const double sign : {-1.0, 1.0}) {
+    ASSERT_TRUE(world->command("rov", "thrusters", std::vector<double>(8, sign * 1e6)).ok());
+    ASSERT_TRUE(world->tick(1).ok());
+    const auto [least_n, most_n] = world->agents()[0].thruster_n[0];
+    EXPECT_DOUBLE_EQ(world->truth("rov")->thruster_n[0], sign < 0.0 ? least_n : most_n);
+  }
+}
+
+TEST_F(WorldTest, ATickEndsWhereItIsStopped) {
+  const auto world = open();
+  int asked = 0;
+  ASSERT_TRUE(world->tick(100, [&] { return ++asked == 7; }).ok());
+  EXPECT_EQ(world->step(), 7u);
+  ASSERT_TRUE(world->tick(3).ok());
+  EXPECT_EQ(world->step(), 10u);
+}
+
+TEST_F(WorldTest, RefusesWhatWouldActOtherwiseThanItSays) {
+  const auto world = open(), other = open({.seed = 7});
+  const auto has = [](const Status& status, const char* part) {
+    ASSERT_FALSE(status.ok());
+    EXPECT_NE(status.error().message.find(part), std::string::npos) << status.error().message;
+  };
+  has(world->set_link(world->stream("rov/setpoint").value(), {.delay_s = 1.0}),
+      "link: rov/setpoint: found a stream of inputs");
+  has(world->restore(other->save()), "a state of seed 7; accepted: one of seed ");
+  std::vector<double> failed(8, 0.0);
+  for (const double value : {5.0, -1.0, 0.5}) {
+    failed[2] = value;
+    has(world->command("rov", "faults", failed), "accepted: 0 or 1");
+  }
 }
 
 TEST_F(WorldTest, DelaysAndLosesOnArrivalAlone) {
