@@ -27,7 +27,12 @@ std::string shown(const json& value) {
       if (c < ' ' || c > '~') c = '?';
     return "\"" + text + "\"";
   }
-  if (value.is_number_float()) return fmt::format("{}", value.get<double>());
+  if (value.is_number_float()) {
+    // 1.0 is another thing than 1 where a whole number is accepted.
+    std::string text = fmt::format("{}", value.get<double>());
+    if (text.find_first_not_of("-0123456789") == text.npos) text += ".0";
+    return text;
+  }
   if (value.is_number_unsigned()) return fmt::format("{}", value.get<std::uint64_t>());
   if (value.is_number_integer()) return fmt::format("{}", value.get<std::int64_t>());
   if (value.is_boolean()) return value.get<bool>() ? "true" : "false";

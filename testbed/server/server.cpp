@@ -91,7 +91,9 @@ class Server::Network {
   void put_news(News& news);
   void answer(const Answer& answer);
   void end_observing(TimeNs now);
-  void refuse(ClientId id, std::uint64_t request, const std::string& line);
+  enum class Known { kYes, kNo };
+  void refuse(ClientId id, std::uint64_t request, const std::string& line,
+              Known known = Known::kYes);
   // Sends the map with the client's mail.
   void deliver(ClientId id, Client& client, json map, Outgoing message, bool mail);
   void send(ClientId id, const json& map, Outgoing message);
@@ -140,7 +142,8 @@ void Server::Network::hear(const net::ClientMessage& message) {
   if (!request.ok()) return refuse(message.client, id, request.error().message);
   if (!client.greeted && request->op != Op::kHello)
     return refuse(message.client, id,
-                  found_accepted(name_of(request->op), "hello first, with the protocol's number"));
+                  found_accepted(name_of(request->op), "hello first, with the protocol's number"),
+                  Known::kNo);
   if (of_simulation(request->op))
     hand_over(message.client, client, std::move(*request));
   else
@@ -152,9 +155,12 @@ void Server::Network::gone(ClientId client) {
     left_.push_back({.sort = Ask::Sort::kGone, .client = client, .name = {}, .request = {}});
 }
 
-void Server::Network::refuse(ClientId id, std::uint64_t request, const std::string& line) {
+void Server::Network::refuse(ClientId id, std::uint64_t request, const std::string& line,
+                             Known known) {
   ++counts_.refused;
-  send(id, {{"id", request}, {"ok", false}, {"error", line}}, {{{}}});
+  json map{{"id", request}, {"ok", false}, {"error", line}};
+  if (known == Known::kNo) map["unknown"] = true;
+  send(id, map, {{{}}});
 }
 
 void Server::Network::greet(ClientId id, Client& client, const Request& request) {

@@ -4,12 +4,16 @@
 #include <utility>
 
 #include "engine/core/refusal.hpp"
+#include "testbed/server/client_mail.hpp"
 
 namespace neritic::testbed {
 namespace {
 
-constexpr std::size_t kRequestsAtOnce = 64;     // between two steps
-constexpr std::uint64_t kStepsAtOnce = 24;      // between two looks at the requests
+constexpr std::size_t kRequestsAtOnce = 64;  // between two steps
+// Between two looks at the requests: steps, and readings that someone wants each of.
+constexpr std::uint64_t kStepsAtOnce = 24, kReadingsAtOnce = 1024;
+// A tick ends early at so many: its client has to take them before more come. Then none is lost.
+constexpr std::size_t kReadingsOfTick = ClientMail::kMostKept / 2;
 constexpr std::chrono::milliseconds kIdle{50};  // that it waits for requests at most
 // For the inbox's numbers of sources; the rest is left to the scene's devices.
 constexpr std::size_t kMostSources = 128;
@@ -78,8 +82,11 @@ bool WorldServer::take_requests() {
 Status WorldServer::step() {
   const std::uint64_t steps =
       options_.real_time ? 1 : std::min(kStepsAtOnce, turn_->until - world_.step());
-  const Status status = world_.tick(steps);
-  const bool ends = !options_.real_time && (!status.ok() || world_.step() >= turn_->until);
+  const Status status =
+      world_.tick(steps, [&] { return world_.arrived() >= std::size_t{kReadingsAtOnce}; });
+  if (turn_) turn_->arrived += world_.arrived();
+  const bool ends = !options_.real_time && (!status.ok() || world_.step() >= turn_->until ||
+                                            turn_->arrived >= kReadingsOfTick);
   // Where the tick's answer follows, that wakes the network's thread, once for both.
   publish(ends && turn_->client != 0 ? Wake::kLater : Wake::kNow);
   if (options_.real_time) return status;
@@ -165,7 +172,7 @@ Status WorldServer::begin_tick(const Ask& ask) {
     holder_name_ = ask.name;
   }
   NERITIC_TRY_STATUS(check_holder(ask));
-  turn_ = Turn{ask.client, ask.request.id, world_.step() + ask.request.steps};
+  turn_ = Turn{ask.client, ask.request.id, world_.step() + ask.request.steps, 0};
   return {};
 }
 

@@ -37,6 +37,7 @@ class WorldServer {
   struct Turn {  // a tick that goes on
     ClientId client = 0;
     std::uint64_t id = 0, until = 0;
+    std::size_t arrived = 0;  // readings since it began
   };
   struct Waiting {
     ClientId client = 0;

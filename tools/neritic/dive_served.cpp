@@ -1,6 +1,7 @@
 #include "tools/neritic/dive_served.hpp"
 
 #include "engine/core/refusal.hpp"
+#include "engine/core/text.hpp"
 #include "engine/core/version.hpp"
 
 namespace neritic::tools {
@@ -8,8 +9,8 @@ using namespace testbed;
 
 Result<Address> tcp_address(const std::string& flag, const std::string& text) {
   auto parsed = parse_address(text);
-  if (!parsed.ok()) return bad_input("{}: {}", flag, parsed.error().message);
-  if (parsed->transport != Transport::kTcp) return refusal(flag, text, "tcp://ADDRESS:PORT");
+  if (!parsed.ok() || parsed->transport != Transport::kTcp)
+    return refusal(flag, fmt::format("\"{}\"", printable(text)), "tcp://ADDRESS:PORT");
   return std::move(parsed).value();
 }
 

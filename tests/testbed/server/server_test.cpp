@@ -128,6 +128,29 @@ TEST_F(ServerTest, EachReadingOfAKeptStreamComes) {
   for (std::size_t i = 0; i < here.size(); ++i) EXPECT_EQ(arrived[i].values, here[i].values);
 }
 
+// A tick of more steps than a client's mail has room for ends early, before it loses one.
+TEST_F(ServerTest, ALongTickLosesNoReading) {
+  serve();
+  const auto remote = client();
+  done(*remote, {{"op", "keep"}, {"stream", "rov/imu"}});
+  const std::uint64_t steps = 240 * 60;
+  std::uint64_t step = 0, next = 0;
+  int ticks = 0;
+  for (; step < steps && ticks < 100; ++ticks) {
+    const auto reply = done(*remote, {{"op", "tick"}, {"steps", steps - step}});
+    step = reply.map.at("step");
+    EXPECT_FALSE(reply.map.contains("lost_readings"));
+    const auto arrived = readings_in(reply, "arrived").value();
+    for (const Reading& reading : arrived) {
+      if (next == 0) next = reading.sequence;
+      ASSERT_EQ(reading.sequence, next++);
+    }
+  }
+  EXPECT_EQ(step, steps);
+  EXPECT_GT(next, 8192u);
+  EXPECT_GT(ticks, 1);
+}
+
 TEST_F(ServerTest, AStateGoesBackToWhereItWas) {
   serve();
   const auto remote = client();
