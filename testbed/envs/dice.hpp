@@ -1,5 +1,5 @@
 // Random numbers of one environment at one of its steps: counter-based, so that they depend on
-// seed, environment, episode, step and place alone. Plain value; any thread.
+// seed, episode, step and place alone. Plain value; any thread.
 #pragma once
 
 #include <numbers>
@@ -10,8 +10,8 @@ namespace neritic::testbed {
 
 class Dice {
  public:
-  Dice(std::uint64_t seed, std::uint64_t env, std::uint64_t episode, std::uint64_t step)
-      : base_(mix64(((episode << 32) + step) ^ mix64(env ^ mix64(seed)))) {}
+  Dice(std::uint64_t seed, std::uint64_t episode, std::uint64_t step)
+      : base_(mix64(((episode << 32) + step) ^ mix64(mix64(seed)))) {}
   std::uint64_t bits(std::uint64_t place) const { return mix64(place ^ base_); }
   // In [0, 1).
   double share(std::uint64_t place) const {

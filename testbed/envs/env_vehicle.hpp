@@ -33,7 +33,7 @@ struct EnvMethod {
     kSplit,    // the thrusters' lag exactly, the rest by RK4, in substeps (rov/integrators)
     kGuarded,  // as the simulation: as many substeps as the vehicle's state asks for (rov/step)
   } kind = Kind::kSplit;
-  int substeps = 2;
+  int substeps = 0;          // 0: as many as the step's length asks for
   bool thrust_table = true;  // commands in whole microseconds of the vehicle's table, as in a scene
 };
 Result<EnvMethod::Kind> env_method_of(std::string_view name);  // "split", "guarded"
@@ -42,11 +42,13 @@ Result<EnvMethod::Kind> env_method_of(std::string_view name);  // "split", "guar
 class EnvModel {
  public:
   static Result<std::unique_ptr<const EnvModel>> read(const std::filesystem::path& vehicle,
-                                                      double step_s, const EnvMethod& method);
+                                                      double step_s, EnvMethod method);
   const rov::VehicleFile& file() const { return file_; }
   const rov::Vehicle& vehicle() const { return vehicle_; }
   const rov::Allocator& allocator() const { return allocator_; }
   std::size_t thrusters() const { return vehicle_.thruster_count; }
+  // Least and most force of each thruster.
+  std::span<const std::pair<double, double>> limits_n() const { return limits_n_; }
   // The largest force or moment of each axis alone.
   const rov::Vec6& most_wrench() const { return most_wrench_; }
   double step_s() const { return step_s_; }
@@ -60,6 +62,7 @@ class EnvModel {
   rov::Vehicle vehicle_;
   rov::Allocator allocator_;
   rov::Vec6 most_wrench_;
+  std::vector<std::pair<double, double>> limits_n_;
   double step_s_;
   EnvMethod method_;
   std::vector<std::uint32_t> first_at_;  // by buckets of force: where to look from

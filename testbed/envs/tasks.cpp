@@ -14,7 +14,13 @@ constexpr std::array<std::string_view, 5> kTaskNames{"hover", "track", "dock", "
 
 // A vehicle so far from its goal has failed.
 constexpr double kLost_m = 5.0;
+// What an episode's end adds. All rewards before it are 0 or more, but for the effort: an end by
+// failure is never worth it.
 constexpr double kLostWorth = -10.0, kDoneWorth = 10.0;
+// The potential of the best place in a task that can be done, kBestPlace * kPotential, is less than
+// kDoneWorth: being done is worth more than any place beside it.
+constexpr double kBestPlace = 1.5, kPotential = 5.0;
+static_assert(kBestPlace * kPotential < kDoneWorth);
 
 // For the dock: a cone in front of it must be kept to, and its back is solid.
 constexpr double kDockRadius_m = 0.15, kDockSpeed_m_s = 0.25, kDockTurn_rad = 0.2;
@@ -95,6 +101,19 @@ void hunt(double step_s, const Vec3& vehicle_ned_m, TaskState& s) {
   // It comes to the diver's depth.
   s.shark_ned_m.z += std::clamp(s.diver_ned_m.z - s.shark_ned_m.z, -0.3 * step_s, 0.3 * step_s);
   s.shark_away_s = std::max(0.0, s.shark_away_s - step_s);
+}
+
+double turn_to_goal_rad(const TaskState& s, const rov::WaterMotion& motion) {
+  return std::abs(turned_rad(rov::heading_of(motion.attitude), s.goal.heading_rad));
+}
+
+// Of where the vehicle is, 0 to kBestPlace.
+double place_worth(const TaskState& s, const rov::WaterMotion& motion) {
+  const double off_m = glm::length(s.goal.position_ned_m - motion.position_ned_m);
+  // Up of the body against up: 1 level, -1 overturned.
+  const double level =
+      1.0 - 2.0 * (motion.attitude.x * motion.attitude.x + motion.attitude.y * motion.attitude.y);
+  return std::exp(-off_m) + 0.3 * std::exp(-turn_to_goal_rad(s, motion)) + 0.1 * (1.0 + level);
 }
 
 }  // namespace
@@ -183,34 +202,35 @@ void advance(Task task, const Dice& dice, double time_s, double step_s, const Ve
   }
 }
 
+double potential_of(Task task, const TaskState& s, const rov::WaterMotion& motion) {
+  return task == Task::kDock ? kPotential * place_worth(s, motion) : 0.0;
+}
+
 Worth worth_of(Task task, const TaskState& s, const rov::WaterMotion& motion,
-               const rov::Vec6& velocity, double effort) {
+               const rov::Vec6& velocity, double effort, double before) {
   const Vec3 off = s.goal.position_ned_m - motion.position_ned_m;
-  const double off_m = glm::length(off),
-               turn_rad =
-                   std::abs(turned_rad(rov::heading_of(motion.attitude), s.goal.heading_rad));
-  // Up of the body against up: 1 level, -1 overturned.
-  const double level =
-      1.0 - 2.0 * (motion.attitude.x * motion.attitude.x + motion.attitude.y * motion.attitude.y);
+  const double off_m = glm::length(off), turn_rad = turn_to_goal_rad(s, motion);
+  const double gained = potential_of(task, s, motion) - before;
   Worth out;
-  out.reward = std::exp(-off_m) + 0.3 * std::exp(-turn_rad) + 0.2 * level - 0.05 * effort;
+  out.reward = (task == Task::kDock ? gained : place_worth(s, motion)) - 0.05 * effort;
+  // A failure's place is worth nothing (Ng, Harada, Russell 1999: the potential of an end is 0).
+  const Worth lost{kLostWorth - before, true};
   // Not < : NaN is lost too.
-  if (!(off_m <= kLost_m) && task != Task::kShark) return {kLostWorth, true};
+  if (!(off_m <= kLost_m) && task != Task::kShark) return lost;
   if (task == Task::kDock) {
     const Vec3 axis = direction(s.goal.heading_rad);
     const double before_m = glm::dot(off, axis), beside_m = glm::length(off - before_m * axis);
     if (off_m < kDockRadius_m && glm::length(velocity.linear()) < kDockSpeed_m_s &&
         turn_rad < kDockTurn_rad)
-      return {kDoneWorth, true};
+      return {kDoneWorth + gained, true};
     const bool in_back = before_m < -kDockRadius_m;
     const bool in_rim = before_m < kMouth_m &&
                         beside_m > kDockRadius_m + kConeSlope * std::max(before_m, 0.0) + 0.1;
-    if (in_back || in_rim) return {kLostWorth, true};
+    if (in_back || in_rim) return lost;
   }
   if (task == Task::kShark) {
-    if (!(glm::length(motion.position_ned_m - s.diver_ned_m) <= 4.0 * kLost_m))
-      return {kLostWorth, true};
-    if (glm::length(s.shark_ned_m - s.diver_ned_m) < kSharkBites_m) return {kLostWorth, true};
+    if (!(glm::length(motion.position_ned_m - s.diver_ned_m) <= 4.0 * kLost_m)) return lost;
+    if (glm::length(s.shark_ned_m - s.diver_ned_m) < kSharkBites_m) return lost;
   }
   return out;
 }

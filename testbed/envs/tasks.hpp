@@ -55,8 +55,13 @@ Start start_of(Task task, const Dice& dice);
 // After time_s of the episode, one step later.
 void advance(Task task, const Dice& dice, double time_s, double step_s, const Vec3& vehicle_ned_m,
              TaskState& state);
-// of the vehicle's motion then; effort: mean square of the actions, 0 to 1.
+// In a task that is done once: the worth of where the vehicle is, of which a step's reward is the
+// gain, so that staying beside the goal earns nothing. 0 in the others, whose steps are rewarded by
+// where the vehicle is.
+double potential_of(Task task, const TaskState& state, const rov::WaterMotion& motion);
+// Of the vehicle's motion then; effort: mean square of the actions, 0 to 1; before: the potential
+// before the step.
 Worth worth_of(Task task, const TaskState& state, const rov::WaterMotion& motion,
-               const rov::Vec6& velocity, double effort);
+               const rov::Vec6& velocity, double effort, double before);
 
 }  // namespace neritic::testbed

@@ -80,7 +80,7 @@ void VectorEnv::for_each(const One& one) {
 
 void VectorEnv::begin(std::size_t i) {
   Env& env = envs_[i];
-  const Dice dice(env.seed, i, env.episode, 0);
+  const Dice dice(env.seed, env.episode, 0);
   const Start start = start_of(options_.task, dice);
   env.task = start.state;
   env.vehicle.begin(*model_, options_.random, dice, start.position_ned_m,
@@ -89,11 +89,15 @@ void VectorEnv::begin(std::size_t i) {
   env.over = false;
 }
 
-void VectorEnv::reset(std::span<const std::uint64_t> seeds, const EnvArrays& out) {
-  NERITIC_CHECK(seeds.size() == 1 || seeds.size() == envs_.size(), "{} seeds", seeds.size());
+void VectorEnv::reset(std::span<const std::optional<std::uint64_t>> seeds, const EnvArrays& out) {
+  NERITIC_CHECK(seeds.size() == envs_.size(), "{} seeds", seeds.size());
   for_each([&](std::size_t i) {
-    envs_[i].seed = seeds.size() == 1 ? seeds[0] : seeds[i];
-    envs_[i].episode = 0;
+    if (seeds[i]) {
+      envs_[i].seed = *seeds[i];
+      envs_[i].episode = 0;
+    } else {
+      ++envs_[i].episode;
+    }
     begin(i);
     observe(i, out.goal + i * EnvArrays::kGoal, out.motion + i * EnvArrays::kMotion);
     std::fill_n(out.action + i * actions_, actions_, 0.0f);
@@ -106,7 +110,7 @@ void VectorEnv::observe(std::size_t i, float* goal, float* motion) const {
   const rov::WaterMotion& m = env.vehicle.motion;
   const Goal& g = env.task.goal;
   const Randomisation& r = options_.random;
-  const Dice dice(env.seed, i, env.episode, env.step);
+  const Dice dice(env.seed, env.episode, env.step);
   const auto noise = [&](std::uint64_t place, double by) {
     if (by == 0.0) return Vec3(0.0);
     return by * Vec3(dice.normal(kNoise + place), dice.normal(kNoise + place + 1),
@@ -157,8 +161,8 @@ void VectorEnv::step_one(std::size_t i, const float* actions, const EnvArrays& o
     if (options_.wrench) {
       wrench[k] = share * model_->most_wrench()[k];
     } else {
-      const rov::Thruster& thruster = model_->vehicle().thrusters[k];
-      command_n[k] = share * (share < 0.0 ? -thruster.min_n : thruster.max_n);
+      const auto [least_n, most_n] = model_->limits_n()[k];
+      command_n[k] = share * (share < 0.0 ? -least_n : most_n);
     }
   }
   if (options_.wrench) {
@@ -166,13 +170,14 @@ void VectorEnv::step_one(std::size_t i, const float* actions, const EnvArrays& o
         rov::vec6(ros::flu_from_marine(wrench.linear()), ros::flu_from_marine(wrench.angular()));
     command_n = model_->allocator().allocate(wrench).force_n;
   }
+  const double before = potential_of(options_.task, env.task, env.vehicle.motion);
   env.vehicle.step(*model_, std::span(command_n).first(model_->thrusters()));
   ++env.step;
-  const Dice dice(env.seed, i, env.episode, env.step);
+  const Dice dice(env.seed, env.episode, env.step);
   advance(options_.task, dice, env.step * options_.step_s, options_.step_s,
           env.vehicle.motion.position_ned_m, env.task);
   const Worth worth =
-      worth_of(options_.task, env.task, env.vehicle.motion, env.vehicle.velocity(), effort);
+      worth_of(options_.task, env.task, env.vehicle.motion, env.vehicle.velocity(), effort, before);
   out.reward[i] = static_cast<float>(worth.reward);
   out.terminated[i] = worth.ends ? 1 : 0;
   out.truncated[i] = !worth.ends && env.step >= options_.most_steps ? 1 : 0;

@@ -1,6 +1,7 @@
 // Many small worlds of one vehicle each, stepped together for learning: Gymnasium's vector
-// interface over arrays of the caller. Each environment depends on the seed, its number and its own
-// actions alone: the same bits on any number of threads. One thread at a time calls it.
+// interface over arrays of the caller. Each environment depends on its seed and its own actions
+// alone: the same bits in any place among any others, on any number of threads. One thread at a
+// time calls it.
 //
 // Observations are over the vehicle's own axes, forward, left, up (metres, seconds, radians), with
 // the noise that its randomisation says.
@@ -58,8 +59,8 @@ class VectorEnv {
   const EnvModel& model() const { return *model_; }
   unsigned threads() const { return workers_.threads(); }
 
-  // All begin their first episode; seeds: one for all, or one each.
-  void reset(std::span<const std::uint64_t> seeds, const EnvArrays& out);
+  // seeds: one each. Those with a seed begin its first episode, the others their next one.
+  void reset(std::span<const std::optional<std::uint64_t>> seeds, const EnvArrays& out);
   // actions: actions() an environment, each from -1 to 1, cut to that; one that is not a number is
   // 0.
   void step(std::span<const float> actions, const EnvArrays& out);

@@ -65,7 +65,7 @@ class Remote(unittest.TestCase):
             for turn in range(6):
                 if turn == 2:
                     for world in (here, there):
-                        world["rov"].goto(8, 15, -20)
+                        world["rov"].goto(8, 15, -15)
                         world["diver"].jacket(inflate=True)
                 self.same(here.tick(40), there.tick(40))
                 self.assertEqual(here.hash, there.hash)
@@ -111,6 +111,87 @@ class Remote(unittest.TestCase):
                 with self.assertRaisesRegex(neritic.BadInput, "found .*; accepted: ") as caught:
                     call()
                 self.assertNotIn("\n", str(caught.exception))
+
+    def test_a_long_tick_loses_no_reading(self):
+        scene = str(ROOT / "assets/scenes/mission_measured.toml")
+        with Served(scene=scene) as address, neritic.open(scene, seed=3) as here, neritic.connect(address) as there:
+            heard = ([], [])
+            for world, to in zip((here, there), heard):
+                world.on("rov/imu", lambda reading, to=to: to.append(reading.sequence))
+                world.tick(240 * 60)
+            self.assertEqual(*heard)
+            self.assertGreater(len(heard[0]), 8192)
+            self.assertEqual((there.step, there.lost_readings), (here.step, 0))
+            self.assertEqual((there.counts()["lost_readings"], there.counts()["lost_images"]), (0, 0))
+
+    def test_a_call_that_was_given_up_loses_no_reading(self):
+        with Served() as address, neritic.connect(address) as there:
+            heard = []
+            there.on("diver/motion", lambda reading: heard.append(reading.sequence))
+            there.tick(24)
+            patience, there._core._patience = there._core._patience, -1e3
+            with self.assertRaisesRegex(neritic.Error, "no answer"):
+                there.tick(240)
+            there._core._patience = patience
+            there.tick(24)
+            self.assertEqual(heard, list(range(heard[0], heard[0] + len(heard))))
+            self.assertGreater(len(heard), 24 + 24)
+
+    def test_a_server_that_was_started_anew_is_named(self):
+        with Served() as address, neritic.connect(address) as there:
+            pass
+        with Served() as address:
+            there = neritic.connect(address)
+            there.tick(1)
+        with Served():
+            with self.assertRaisesRegex(neritic.Error, "the server knows nothing of this client.*; accepted: neritic.connect"):
+                for _ in range(2):  # the first call may find the connection closed
+                    try:
+                        there.tick(1)
+                    except neritic.Error as error:
+                        if "was closed" not in str(error):
+                            raise
+            there.close()
+
+    def test_a_closed_world_and_bad_numbers_are_refused_as_in_the_process(self):
+        with Served("--seconds", "60") as address, neritic.open(SCENE, seed=3) as here, neritic.connect(address) as there:
+            lines = []
+            for world in (here, there):
+                for call in (lambda: world["rov"].goto(float("nan"), 0, 0), lambda: world["rov"].thrusters([0] * 300),
+                             lambda: world["rov"].thrusters(np.inf * np.ones(8))):
+                    with self.assertRaises(neritic.BadInput) as raised:
+                        call()
+                    lines.append(str(raised.exception))
+            self.assertEqual(lines[:3], lines[3:])
+            there.close()
+            for name in ("time", "step", "title", "seed", "step_s", "hash"):
+                with self.assertRaisesRegex(neritic.BadInput, "closed"):
+                    getattr(there, name)
+
+    def test_close_ends_a_tick_of_another_thread(self):
+        with Served() as address:
+            world, ends = neritic.connect(address), []
+
+            def long():
+                try:
+                    world.tick(240 * 3600)
+                except neritic.Error as error:
+                    ends.append(str(error))
+
+            thread = threading.Thread(target=long)
+            thread.start()
+            time.sleep(0.3)
+            world.close()
+            thread.join(5.0)
+            self.assertFalse(thread.is_alive())
+            self.assertRegex(ends[0], "closed")
+
+    def test_a_server_is_refused_what_it_cannot_use(self):
+        for flags, words in ((["--bind", "foo"], "--bind: found \"foo\"; accepted: tcp://ADDRESS:PORT"),
+                             (["--recordings", "/nowhere/at/all"], "--recordings: found /nowhere/at/all, no folder; accepted: ")):
+            done = subprocess.run([PROGRAM, "serve", SCENE, *flags], capture_output=True, text=True, timeout=30)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(words, done.stderr)
 
     def test_a_wait_ends_with_the_steps_of_others(self):
         with Served("--realtime") as address, neritic.connect(address) as there, \

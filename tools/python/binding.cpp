@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 
 #include <atomic>
+#include <chrono>
 
 #include "engine/core/refusal.hpp"
 #include "testbed/envs/vector_env.hpp"
@@ -34,6 +35,8 @@ void check(const Status& status) {
 // The exceptions, from the package; they live as long as the interpreter.
 PyObject* error_class = nullptr;
 PyObject* bad_input_class = nullptr;
+// The one that Python's handlers of signals run on.
+unsigned long main_thread = 0;
 
 // One call at a time: another thread's call is refused, not interleaved.
 class Busy {
@@ -43,7 +46,10 @@ class Busy {
       throw Raised{
           bad_input("found a call while another thread's goes on; accepted: one at a time")};
   }
-  ~Busy() { flag_.clear(); }
+  ~Busy() {
+    flag_.clear();
+    flag_.notify_all();
+  }
   Busy(const Busy&) = delete;
   Busy& operator=(const Busy&) = delete;
 
@@ -94,6 +100,8 @@ py::array pixels_of(py::object owner) {
 struct PyWorld {
   std::unique_ptr<World> world;
   std::atomic_flag busy = ATOMIC_FLAG_INIT;
+  std::atomic<unsigned long> caller{0};  // the thread whose call goes on; 0: none
+  std::atomic<bool> stop{false};         // a tick that goes on ends after its step
 
   World& get() const {
     if (!world) throw Raised{bad_input("found a world that is closed; accepted: neritic.open()")};
@@ -104,7 +112,58 @@ struct PyWorld {
 template <class Call>
 auto with(PyWorld& self, const Call& call) {
   const Busy busy(self.busy);
+  struct Caller {
+    std::atomic<unsigned long>& thread;
+    ~Caller() { thread = 0; }
+  } caller{self.caller};
+  caller.thread = PyThread_get_thread_ident();
   return call(self.get());
+}
+
+// Ends early where the readings that wait are many: its caller takes them and goes on. Between
+// steps Python's handlers of signals run, so that Ctrl-C ends it: the world stays where it is.
+Readings tick(PyWorld& self, std::uint64_t steps) {
+  const bool handles = PyThread_get_thread_ident() == main_thread;
+  constexpr auto kSignals = std::chrono::milliseconds(20);
+  return with(self, [&](World& world) {
+    bool raised = false;
+    self.stop = false;
+    auto next = std::chrono::steady_clock::now() + kSignals;
+    const auto stop = [&] {
+      if (self.stop || world.arrived() >= World::kMostKept / 2) return true;
+      if (!handles || std::chrono::steady_clock::now() < next) return false;
+      const py::gil_scoped_acquire acquire;
+      raised = PyErr_CheckSignals() != 0;
+      next = std::chrono::steady_clock::now() + kSignals;
+      return raised;
+    };
+    const Status status = [&] {
+      const py::gil_scoped_release release;
+      return world.tick(steps, stop);
+    }();
+    if (raised) throw py::error_already_set();
+    check(status);
+    if (self.stop)
+      throw Raised{failure(ErrorCode::kInterrupted, "tick: stopped at step {}, before its end",
+                           world.step())};
+    const auto newest = world.newest();
+    return Readings{{newest.begin(), newest.end()}, world.step(), world.time_s()};
+  });
+}
+
+// Another thread's call ends first; a tick ends after its step.
+void close(PyWorld& self) {
+  if (const unsigned long caller = self.caller;
+      caller != 0 && caller != PyThread_get_thread_ident()) {
+    self.stop = true;
+    const py::gil_scoped_release release;
+    self.busy.wait(true);
+  }
+  const Busy busy(self.busy);
+  if (!self.world) return;
+  const Status recorded = self.world->recording() ? self.world->stop_recording() : Status();
+  self.world.reset();
+  check(recorded);
 }
 
 py::array_t<double> array_of(std::span<const double> values) {
@@ -189,11 +248,8 @@ void bind_world(py::module_& m) {
                                                   .validation = validation}));
         return self;
       }))
-      .def("close",
-           [](PyWorld& self) {
-             const Busy busy(self.busy);
-             self.world.reset();
-           })
+      .def("close", &close)
+      .def("stop", [](PyWorld& self) { self.stop = self.caller != 0; })
       .def_property_readonly("closed", [](const PyWorld& self) { return !self.world; })
       .def_property_readonly("title", [](const PyWorld& self) { return self.get().title(); })
       .def_property_readonly("path", [](const PyWorld& self) { return self.get().path(); })
@@ -209,15 +265,7 @@ void bind_world(py::module_& m) {
                              [](const PyWorld& self) { return self.get().recording(); })
       .def("stream",
            [](PyWorld& self, const std::string& name) { return value_of(self.get().stream(name)); })
-      .def("tick",
-           [](PyWorld& self, std::uint64_t steps) {
-             return with(self, [&](World& world) {
-               const py::gil_scoped_release release;
-               check(world.tick(steps));
-               const auto newest = world.newest();
-               return Readings{{newest.begin(), newest.end()}, world.step(), world.time_s()};
-             });
-           })
+      .def("tick", &tick)
       .def("newest",
            [](PyWorld& self) {
              return with(self, [](World& world) {
@@ -380,11 +428,8 @@ void bind_envs(py::module_& m) {
              self.kept = given;
            })
       .def("reset",
-           [](PyVectorEnv& self, const std::vector<std::uint64_t>& seeds) {
+           [](PyVectorEnv& self, const std::vector<std::optional<std::uint64_t>>& seeds) {
              const Busy busy(self.busy);
-             if (seeds.size() != 1 && seeds.size() != self.env->count())
-               throw Raised{refusal("seed", fmt::format("{} seeds", seeds.size()),
-                                    fmt::format("1 or {}", self.env->count()))};
              const py::gil_scoped_release release;
              self.env->reset(seeds, self.arrays);
            })
@@ -424,6 +469,8 @@ PYBIND11_MODULE(_core, m) {
       PyErr_SetString(kind ? kind : PyExc_RuntimeError, r.error.message.c_str());
     }
   });
+  main_thread =
+      py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>();
   m.attr("GOAL") = EnvArrays::kGoal;
   m.attr("MOTION") = EnvArrays::kMotion;
   bind_world(m);

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Optional, Sequence, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import flag, numbers, rotations, shown, whole, word
+from .arguments import finite, flag, numbers, rotations, shown, whole, word
 from .errors import BadInput
 from .observations import Message
 
@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from .world import World
 
 
+MOST_NUMBERS = 256
+"""Of a command, at most (testbed/server/request.hpp)."""
+MOST_BYTES = 64
+"""Of a message by sound (testbed/samples/payloads.hpp)."""
 MOST_TANKS = 4
 """A diver's tanks, at most (diver/gear.hpp)."""
 
@@ -45,8 +49,10 @@ class Agent:
         come while the modem sends are refused."""
         try:
             data = data.encode() if isinstance(data, str) else bytes(memoryview(data))
-        except TypeError:
+        except (TypeError, UnicodeEncodeError):
             raise BadInput(f"{self.name}: send: found {shown(data)}; accepted: a text or bytes") from None
+        if not 1 <= len(data) <= MOST_BYTES:
+            raise BadInput(f"{self.name}: send: found {len(data)} bytes; accepted: 1 to {MOST_BYTES}")
         number = 0
         if to is not None:
             number = self._world[to].modem
@@ -68,7 +74,8 @@ class Agent:
     def command(self, kind: str, values: ArrayLike, hold: float = 0.0) -> None:
         """A command by its name and numbers, as the methods below send it."""
         kind = word(f"{self.name}: command", kind)
-        self._world._core.command(self.name, kind, numbers(f"{self.name}: {kind}", values),
+        where = f"{self.name}: {kind}"
+        self._world._core.command(self.name, kind, finite(where, numbers(where, values), MOST_NUMBERS),
                                   float(numbers(f"{self.name}: {kind}: hold", hold, 1)[0]), self._world.source)
 
     def _joined(self, kind: str, hold: float, **parts: tuple[ArrayLike, int]) -> None:
@@ -97,7 +104,7 @@ class Vehicle(Agent):
                  takes_pwm: bool) -> None:
         super().__init__(world, name)
         self.thruster_n = np.array(thruster_n, np.float64).reshape(-1, 2)
-        """Least and most force of each thruster, in newtons."""
+        """Least and most force that a command gives each thruster, in newtons, at the voltage of its file."""
         self.takes_pwm = takes_pwm
         """Whether its file names a thrust table, which pwm() needs."""
 
@@ -118,11 +125,13 @@ class Vehicle(Agent):
         self._joined("wrench", hold, force=(force, 3), torque=(torque, 3))
 
     def thrusters(self, force_n: ArrayLike, hold: float = 0.0) -> None:
-        """The force of each thruster in N, in the order of the vehicle's file. Nothing is held."""
+        """The force of each thruster in N, in the order of the vehicle's file. Nothing is held. It acts from the next step
+        on, while goto, velocity and wrench act through the autopilot at the rate of the vehicle's file (50 Hz unless
+        its [control] says otherwise). Thrusters follow with their lag."""
         self.command("thrusters", force_n, hold)
 
     def pwm(self, width_us: ArrayLike, hold: float = 0.0) -> None:
-        """The pulse width of each thruster's controller in microseconds: 1500 stands still."""
+        """The pulse width of each thruster's controller in microseconds: 1500 stands still. It acts as thrusters()."""
         self.command("pwm", width_us, hold)
 
     def fail(self, thrusters: Sequence[int] = ()) -> None:
@@ -172,7 +181,8 @@ class TrackedObject(Agent):
     def pose(self, position: Sequence[float], orientation: Sequence[float] = (0.0, 0.0, 0.0, 1.0),
              velocity: Optional[Sequence[float]] = None,
              angular_velocity: Sequence[float] = (0.0, 0.0, 0.0), hold: float = 0.0) -> None:
-        """Places it there now. Velocities are in world axes; without them they follow from two poses."""
+        """Places it there now. Velocities are in world axes; without them they follow from two poses. Until the next pose it
+        moves on at them for 0.1 s, or for the time between the last two poses if that is longer; then it stands still."""
         parts = {"position": (position, 3), "orientation": (orientation, 4)}
         if velocity is not None:
             parts.update(velocity=(velocity, 3), angular_velocity=(angular_velocity, 3))

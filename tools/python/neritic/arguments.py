@@ -40,6 +40,16 @@ def numbers(where: str, values: ArrayLike, count: Optional[int] = None) -> NDArr
     return row.astype(np.float64, copy=False).ravel()
 
 
+def finite(where: str, row: NDArray[np.float64], most: int) -> NDArray[np.float64]:
+    """Finite numbers, at most so many."""
+    if row.size > most:
+        raise BadInput(f"{where}: found {row.size} numbers; accepted: up to {most}")
+    if not np.isfinite(row).all():
+        place = int(np.argmin(np.isfinite(row)))
+        raise BadInput(f"{where}: found {row[place]:g} at place {place}; accepted: finite numbers")
+    return row
+
+
 def number(where: str, value: Any, least: float = -math.inf, most: float = math.inf) -> float:
     """A finite number within limits."""
     row = numbers(where, value, 1)
@@ -65,6 +75,7 @@ def word(where: str, value: Any) -> str:
     """A text."""
     if not isinstance(value, str):
         raise BadInput(f"{where}: found {shown(value)}; accepted: a word in quotes")
+    _check_letters(where, value)
     return value
 
 
@@ -81,9 +92,20 @@ def flag(where: str, value: Any) -> bool:
 def path(where: str, value: Any) -> str:
     """A file's path."""
     try:
-        return os.fsdecode(value)
+        name = os.fsdecode(value)
     except (TypeError, ValueError):
-        raise BadInput(f"{where}: found {shown(value)}; accepted: a file's path") from None
+        name = ""
+    if not name:
+        raise BadInput(f"{where}: found {shown(value)}; accepted: a file's path")
+    _check_letters(where, name)
+    return name
+
+
+def _check_letters(where: str, text: str) -> None:
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise BadInput(f"{where}: found {shown(text)}, with a half of a letter; accepted: whole letters (UTF-8)") from None
 
 
 def shown(value: Any) -> str:

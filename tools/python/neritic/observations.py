@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Iterator, Mapping, Sequence, Union
+import copy
+from dataclasses import astuple, dataclass
+from typing import Any, Iterator, Mapping, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
 
-if TYPE_CHECKING:
-    from .world import World
-
 Float = NDArray[np.float64]
+Header = tuple[int, int, int, int, int]
+Row = tuple[Header, Float]
 
 
 @dataclass(frozen=True)
@@ -30,17 +30,81 @@ class Stream:
     encoding: str  # of images, as in ROS's sensor_msgs/Image
 
 
+class Rows:
+    """Readings in memory of Python's own, with the interface of those of the C++ side."""
+
+    def __init__(self, rows: Sequence[Row], step: int, time_s: float) -> None:
+        self._rows, self.step, self.time = rows, step, time_s
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def header(self, place: int) -> Header:
+        """Stream, count of values, sequence, stamp and arrival in nanoseconds."""
+        return self._rows[place][0]
+
+    def number(self, place: int, index: int) -> float:
+        """One value."""
+        return float(self._rows[place][1][index])
+
+    def values(self, place: int, first: int, count: int) -> Float:
+        """Some values, in their memory."""
+        return self._rows[place][1][first:first + count]
+
+
+@dataclass
+class Pixels:
+    """An image in memory of Python's own, with the interface of one of the C++ side."""
+
+    pixels: NDArray[Any]
+    stream: int
+    sequence: int
+    stamp_ns: int
+    arrival_ns: int
+    position: Sequence[float]
+    orientation: Sequence[float]
+    intrinsics: Sequence[float]
+    range_m: Sequence[float]
+    azimuth: Sequence[float]
+    elevation: Sequence[float]
+
+
+@dataclass(frozen=True)
+class Table:
+    """The streams of a world, by place, and where their values lie."""
+
+    streams: Sequence[Stream]
+    places: Mapping[str, int]
+    offsets: Sequence[Mapping[str, tuple[int, int]]]
+
+
 class Reading:
     """One measurement. Its fields are attributes: `reading.linear_acceleration`, a number or an array.
 
-    Arrays are read-only views of the observation's memory. `fields()` names them.
+    Arrays are read-only views of the observation's memory. `fields()` names them. A copy, by copy or pickle, has
+    arrays of its own. Two are equal if stream, number, times and values are.
     """
 
     __slots__ = ("_of", "_place", "_stream", "_offsets")
 
-    def __init__(self, of: _core.Readings, place: int, stream: Stream,
+    def __init__(self, of: Union[_core.Readings, Rows], place: int, stream: Stream,
                  offsets: Mapping[str, tuple[int, int]]) -> None:
         self._of, self._place, self._stream, self._offsets = of, place, stream, offsets
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        row = (self._of.header(self._place), self.values.copy())
+        return Reading, (Rows([row], self._of.step, self._of.time), 0, self._stream, self._offsets)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Reading):
+            return NotImplemented
+        return self._key() == other._key() and np.array_equal(self.values, other.values, equal_nan=True)
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+    def _key(self) -> tuple[Any, ...]:
+        return (self.stream, *self._of.header(self._place)[1:])
 
     @property
     def stream(self) -> str:
@@ -77,6 +141,8 @@ class Reading:
         return self._of.values(self._place, 0, self._of.header(self._place)[1])
 
     def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
         try:
             first, count = self._offsets[name]
         except KeyError:
@@ -95,12 +161,30 @@ class Reading:
 
 
 class Image:
-    """A picture or sonar image. `pixels` is its own memory: no copy, valid as long as you keep it."""
+    """A picture or sonar image. `pixels` is its own memory: no copy, writable, valid as long as you keep it. A copy, by
+    copy or pickle, has pixels of its own. Two are equal if stream, number, times, pose and pixels are."""
 
     __slots__ = ("_of", "_stream")
 
-    def __init__(self, of: _core.Image, stream: Stream) -> None:
+    def __init__(self, of: Union[_core.Image, Pixels], stream: Stream) -> None:
         self._of, self._stream = of, stream
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        of = self._of
+        return Image, (Pixels(of.pixels.copy(), of.stream, of.sequence, of.stamp_ns, of.arrival_ns, of.position, of.orientation,
+                              of.intrinsics, of.range_m, of.azimuth, of.elevation), self._stream)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Image):
+            return NotImplemented
+        return self._key() == other._key() and np.array_equal(self.pixels, other.pixels, equal_nan=self.pixels.dtype.kind == "f")
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+    def _key(self) -> tuple[Any, ...]:
+        of = self._of
+        return (self.stream, of.sequence, of.stamp_ns, of.arrival_ns, *of.position, *of.orientation)
 
     @property
     def pixels(self) -> NDArray[Any]:
@@ -170,12 +254,18 @@ class Image:
 
 class Observations(Mapping[str, Union[Reading, Image]]):
     """The newest reading of each stream that has arrived, and the newest image of each requested stream. It
-    does not change with later ticks."""
+    does not change with later ticks. A copy, by copy or pickle, has arrays of its own."""
 
-    __slots__ = ("_world", "_of", "_images")
+    __slots__ = ("_table", "_of", "_images")
 
-    def __init__(self, world: World, of: _core.Readings, images: Mapping[str, Image]) -> None:
-        self._world, self._of, self._images = world, of, images
+    def __init__(self, table: Table, of: Union[_core.Readings, Rows], images: Mapping[str, Image]) -> None:
+        self._table, self._of, self._images = table, of, images
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        of = self._of
+        rows = [(of.header(i), of.values(i, 0, of.header(i)[1]).copy()) for i in range(len(of))]
+        images = {name: copy.copy(image) for name, image in self._images.items()}
+        return Observations, (self._table, Rows(rows, of.step, of.time), images)
 
     @property
     def step(self) -> int:
@@ -190,17 +280,17 @@ class Observations(Mapping[str, Union[Reading, Image]]):
     def __getitem__(self, name: str) -> Any:
         if name in self._images:
             return self._images[name]
-        place = self._world._places.get(name)
+        place = self._table.places.get(name)
         if place is None:
             raise KeyError(f"found '{name}'; accepted: {', '.join(self) or 'none: nothing has arrived yet'}")
         if place >= len(self._of) or self._of.header(place)[1] == 0:
             raise KeyError(f"{name}: nothing has arrived yet")
-        return Reading(self._of, place, self._world._streams[place], self._world._offsets[place])
+        return Reading(self._of, place, self._table.streams[place], self._table.offsets[place])
 
     def __iter__(self) -> Iterator[str]:
         for place in range(len(self._of)):
             if self._of.header(place)[1]:
-                yield self._world._streams[place].name
+                yield self._table.streams[place].name
         yield from self._images
 
     def __len__(self) -> int:
@@ -209,16 +299,16 @@ class Observations(Mapping[str, Union[Reading, Image]]):
     def __contains__(self, name: object) -> bool:
         if name in self._images:
             return True
-        place = self._world._places.get(name) if isinstance(name, str) else None
+        place = self._table.places.get(name) if isinstance(name, str) else None
         return place is not None and place < len(self._of) and self._of.header(place)[1] > 0
 
     def __repr__(self) -> str:
         return f"<observations at {self.time:.4f} s: {', '.join(self)}>"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Truth:
-    """The true motion of an agent. Nothing of it is measured."""
+    """The true motion of an agent. Nothing of it is measured. Two are equal if all their numbers are."""
 
     time: float  # simulated seconds at which it holds: of a dive that runs by itself, later than the last tick
     position: Float  # of its origin: east, north, up
@@ -229,6 +319,13 @@ class Truth:
     thruster_n: Float  # of a vehicle: the commands that act, in newtons
     touched_steps: int  # in which it touched something, so far
     joints: Float  # of a diver: 15 rotations as of Diver.joints(), in one row; empty: none are known
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Truth):
+            return NotImplemented
+        return all(np.array_equal(a, b) for a, b in zip(astuple(self), astuple(other)))
+
+    __hash__ = None  # type: ignore[assignment]  # as arrays have none
 
 
 MODEM_EVENTS = ("sent", "refused", "received", "too_weak", "noisy", "collided", "was_sending")

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from .arguments import number, path, shown, whole, word
 from .errors import BadInput, Error
-from .observations import Truth
+from .observations import Pixels, Row, Rows, Truth
 from .world import MOST_STEPS, World
 
 _PROTOCOL = 1
@@ -27,45 +27,19 @@ _PROTOCOL = 1
 _STEPS, _WAIT_S = 100_000, 60.0
 # How long a call waits for a connection that was closed; a server that is no longer heard is gone.
 _AGAIN_S, _HEARTBEAT_MS, _DEAD_MS = 1.0, 5000, 15000
+# How often a call that waits looks whether another thread closes the connection.
+_LOOK_S = 0.05
 _ROW = struct.Struct("<IIQqq")
 _EVENT = struct.Struct("=Hi")  # of the library's monitor, in this machine's byte order
-Row = tuple[tuple[int, int, int, int, int], NDArray[np.float64]]
 
 
-class Readings:
-    """Readings that came: the newest of each stream, or those that arrived."""
-
-    def __init__(self, rows: list[Row], step: int, time_s: float) -> None:
-        self._rows, self.step, self.time = rows, step, time_s
-
-    def __len__(self) -> int:
-        return len(self._rows)
-
-    def header(self, i: int) -> tuple[int, int, int, int, int]:
-        """Stream, count of values, sequence, stamp and arrival in nanoseconds."""
-        return self._rows[i][0]
-
-    def number(self, i: int, k: int) -> float:
-        """One value."""
-        return float(self._rows[i][1][k])
-
-    def values(self, i: int, first: int, count: int) -> NDArray[np.float64]:
-        """Some values, in the memory of the message."""
-        return self._rows[i][1][first:first + count]
-
-
-class Image:
+def _image(facts: Mapping[str, Any], data: bytearray) -> Pixels:
     """An image that came."""
-
-    def __init__(self, facts: Mapping[str, Any], data: Union[bytes, bytearray]) -> None:
-        height, width, channels = facts["shape"]
-        shape = (height, width) if channels == 1 else (height, width, channels)
-        self.pixels = np.frombuffer(data, np.dtype(facts["type"])).reshape(shape)
-        self.stream, self.sequence = facts["stream"], facts["sequence"]
-        self.stamp_ns, self.arrival_ns = facts["stamp_ns"], facts["arrival_ns"]
-        self.position, self.orientation = facts["position"], facts["orientation"]
-        self.intrinsics, self.range_m = facts["intrinsics"], facts["range_m"]
-        self.azimuth, self.elevation = facts["azimuth"], facts["elevation"]
+    height, width, channels = facts["shape"]
+    shape = (height, width) if channels == 1 else (height, width, channels)
+    return Pixels(np.frombuffer(data, np.dtype(facts["type"])).reshape(shape), facts["stream"], facts["sequence"],
+                  facts["stamp_ns"], facts["arrival_ns"], facts["position"], facts["orientation"], facts["intrinsics"],
+                  facts["range_m"], facts["azimuth"], facts["elevation"])
 
 
 class _Ring:
@@ -81,10 +55,11 @@ class _Ring:
         if magic != b"NRTCRNG1" or self.capacity != len(self._map) - 4096:
             raise OSError("no memory of arrays")
 
-    def read(self, position: int, size: int) -> Optional[bytes]:
+    def read(self, position: int, size: int) -> Optional[bytearray]:
         """A copy; None: overwritten meanwhile."""
         at = 4096 + position % self.capacity
-        data = self._map[at:at + size]
+        with memoryview(self._map) as whole_ring:
+            data = bytearray(whole_ring[at:at + size])
         claimed, = struct.unpack_from("<Q", self._map, 24)
         return data if len(data) == size and claimed - position <= self.capacity else None
 
@@ -140,7 +115,8 @@ class Core:
         if key is not None and server_key is not None:
             socket.curve_serverkey = _key(server_key, "public")
             socket.curve_publickey, socket.curve_secretkey = _key(key, "public"), _key(key, "secret")
-        self.closed, self._next, self._ring = False, 0, None
+        self.closed, self.recording, self._next, self._ring = False, False, 0, None
+        self._stop = False  # a tick that goes on ends after its part
         try:
             socket.connect(address)
             hello, _ = self._call("hello", protocol=_PROTOCOL, name=name)
@@ -158,7 +134,7 @@ class Core:
         self._places = {stream[0]: i for i, stream in enumerate(self.streams)}
         self._newest: list[Row] = [((i, 0, 0, 0, 0), np.zeros(0)) for i in range(len(self.streams))]
         self._arrived: list[Row] = []
-        self._images: list[Image] = []
+        self._images: list[Pixels] = []
         self.step, self.time = hello["step"], hello["time_ns"] * 1e-9
         self._hash, self._hash_step = 0, -1
         self.lost_readings = self.lost_images = self._lost_here = 0
@@ -179,16 +155,21 @@ class Core:
                 self._closures += 1
         return self._closures
 
+    def _ended(self) -> BadInput:
+        return BadInput("found a world that is closed; accepted: neritic.connect()")
+
     def _closed(self) -> Error:
         return Error(f"{self._address}: the connection was closed: the server has ended, or it takes this client no more")
 
     def _receive(self, until: float, closures: int) -> list[bytes]:
         """The next message; an Error as soon as the connection is closed, or at that time. Empty: look again."""
-        left_s = max(until - time.monotonic(), 0.0)
+        left_s = min(max(until - time.monotonic(), 0.0), _LOOK_S)
         poller = self._zmq.Poller()
         poller.register(self._socket, self._zmq.POLLIN)
         poller.register(self._monitor, self._zmq.POLLIN)
         poller.poll(left_s * 1e3)
+        if self.closed:
+            raise self._ended()
         closed = self._watch() > closures
         try:
             return list(self._socket.recv_multipart(self._zmq.NOBLOCK))
@@ -201,7 +182,7 @@ class Core:
               **keys: Any) -> tuple[dict[str, Any], list[bytes]]:
         with self._lock:
             if self.closed:
-                raise BadInput("found a world that is closed; accepted: neritic.connect()")
+                raise self._ended()
             self._next += 1
             frames = [self._msgpack.packb({"op": op, "id": self._next, **keys})]
             again = time.monotonic() + _AGAIN_S
@@ -222,7 +203,12 @@ class Core:
                                 "one that is busy, or one with other keys")
                 answer = self._msgpack.unpackb(frames[0])
                 if answer.get("id") != self._next:
-                    continue  # of a call that was given up
+                    if answer.get("ok") and "clock" in answer:
+                        self._take(answer, frames)  # of a call that was given up, with what is new
+                    continue
+                if answer.get("unknown"):
+                    raise Error(f"{self._address}: the server knows nothing of this client: it was started anew, or dropped the "
+                                "client, which it had not heard for long; accepted: neritic.connect() again")
                 if not answer.get("ok"):
                     raise BadInput(f"{self._address}: {answer.get('error', 'refused')}")
                 return answer, frames
@@ -256,14 +242,14 @@ class Core:
             self._arrived += self._rows(answer["arrived"], frames)
         for facts in answer.get("images", ()):
             if "frame" in facts:
-                self._images.append(Image(facts, frames[facts["frame"]]))
+                self._images.append(_image(facts, bytearray(frames[facts["frame"]])))
                 continue
             size = int(np.prod(facts["shape"])) * np.dtype(facts["type"]).itemsize
             data = self._ring.read(facts["shared"], size) if self._ring else None
             if data is None:
                 self._lost_here += 1
             else:
-                self._images.append(Image(facts, data))
+                self._images.append(_image(facts, data))
         self.lost_readings = answer.get("lost_readings", self.lost_readings)
         self.lost_images = answer.get("lost_images", 0) + self._lost_here
         self.step, self.time = answer["step"], answer["time_ns"] * 1e-9
@@ -285,27 +271,34 @@ class Core:
         except KeyError:
             raise BadInput(f"stream: found '{name}'; accepted: {', '.join(self._places)}") from None
 
-    def tick(self, steps: int) -> Readings:
+    def tick(self, steps: int) -> Rows:
         if steps == 0:
             return self.newest()
+        self._stop, end = False, self.step + steps
         while steps > 0:
             part = min(steps, _STEPS)
             self._take(*self._call("tick", 60.0 + part * self.step_s, steps=part))
-            steps -= part
-        return Readings(list(self._newest), self.step, self.time)
+            # The server ends a part early where much arrived.
+            steps = end - self.step
+            if self._stop:
+                raise Error(f"tick: stopped at step {self.step}, before its end")
+        return Rows(list(self._newest), self.step, self.time)
 
-    def newest(self) -> Readings:
+    def stop(self) -> None:
+        self._stop = True
+
+    def newest(self) -> Rows:
         self._take(*self._call("observe"))
-        return Readings(list(self._newest), self.step, self.time)
+        return Rows(list(self._newest), self.step, self.time)
 
     def keep(self, place: int, on: bool) -> None:
         self._call("keep", stream=self.streams[place][0], on=on)
 
-    def take_arrived(self) -> Readings:
+    def take_arrived(self) -> Rows:
         arrived, self._arrived = self._arrived, []
-        return Readings(arrived, self.step, self.time)
+        return Rows(arrived, self.step, self.time)
 
-    def take_images(self) -> list[Image]:
+    def take_images(self) -> list[Pixels]:
         images, self._images = self._images, []
         return images
 
@@ -361,8 +354,10 @@ class Core:
 
     def record(self, name: str) -> None:
         self._call("record", name=name)
+        self.recording = True
 
     def stop_recording(self) -> None:
+        self.recording = False
         self._call("stop_recording", 60.0)
 
     def _hold(self) -> None:
@@ -385,8 +380,16 @@ class Core:
         return self._call("counts")[0]["counts"]
 
     def close(self) -> None:
-        self.closed = True
-        self._end()
+        try:
+            if self.recording and not self.closed:
+                self.stop_recording()
+        finally:
+            self.closed = True
+            # A call of another thread ends first; one of this thread is being left.
+            free = self._lock.acquire(timeout=1.0)
+            self._end()
+            if free:
+                self._lock.release()
 
 
 class RemoteWorld(World):
@@ -397,9 +400,44 @@ class RemoteWorld(World):
     _core: Core
 
     @property
+    def title(self) -> str:
+        """The scene's title."""
+        return self._open().title
+
+    @property
+    def seed(self) -> int:
+        """Everything random follows from it."""
+        return self._open().seed
+
+    @property
+    def step_s(self) -> float:
+        """Seconds of a physics step."""
+        return self._open().step_s
+
+    @property
+    def step(self) -> int:
+        """Physics steps so far, as was last heard."""
+        return self._open().step
+
+    @property
+    def time(self) -> float:
+        """Simulated seconds so far, as was last heard."""
+        return self._open().time
+
+    def _open(self) -> Core:
+        if self._core.closed:
+            raise self._core._ended()
+        return self._core
+
+    @property
     def clock(self) -> str:
         """The client that holds the clock; empty: nobody."""
         return self._core.clock
+
+    @property
+    def lost_readings(self) -> int:
+        """Readings that this client was too slow for. A tick in lock-step loses none."""
+        return self._core.lost_readings
 
     @property
     def lost_images(self) -> int:
@@ -417,6 +455,11 @@ class RemoteWorld(World):
     def _check_record(self, name: str) -> None:
         """The server does."""
 
+    def _run(self, steps: int) -> Rows:
+        of = self._core.tick(steps)
+        self._take()
+        return of
+
     def wait(self, steps: int = 1, most: float = 60.0) -> None:
         """Waits until `steps` steps of others are done, at most `most` seconds."""
         self._core.wait(whole("wait: steps", steps, 0, MOST_STEPS), number("wait: most", most, 0.0))
@@ -430,8 +473,8 @@ class RemoteWorld(World):
                 for i, (agent, row) in enumerate(zip(self._core.agents, poses))}
 
     def counts(self) -> dict[str, int]:
-        """The server's counts: clients, requests, refusals, losses."""
-        return self._core.counts()
+        """The server's counts: clients, requests, refusals, losses; and lost_readings and lost_images of this client."""
+        return {**self._core.counts(), "lost_readings": self.lost_readings, "lost_images": self.lost_images}
 
 
 def connect(address: str, *, name: str = World.source, key: Optional[str] = None,

@@ -28,9 +28,23 @@ class Box:
         return self._random.uniform(low, high).astype(np.float32)
 
     def contains(self, value: Any) -> bool:
-        """Whether the array has the shape and lies within the limits."""
-        array = np.asarray(value)
-        return array.shape == self.shape and bool(np.all((array >= self.low) & (array <= self.high)))
+        """Whether it is an array of that shape within the limits, whose numbers float32 holds without loss, as Gymnasium
+        has it: float64 is none."""
+        try:
+            array = np.asarray(value)
+        except ValueError:  # rows of several lengths
+            return False
+        return bool(array.shape == self.shape and np.can_cast(array.dtype, self.dtype)
+                    and np.all((array >= self.low) & (array <= self.high)))
+
+    def __contains__(self, value: Any) -> bool:
+        return self.contains(value)
+
+    def __eq__(self, other: object) -> bool:
+        return (isinstance(other, Box) and self.shape == other.shape and np.array_equal(self.low, other.low)
+                and np.array_equal(self.high, other.high))
+
+    __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
         return f"Box({self.low.min()}, {self.high.max()}, {self.shape}, {self.dtype})"
@@ -61,8 +75,18 @@ class Dict(Mapping[str, Box]):
         return {name: space.sample() for name, space in self.spaces.items()}
 
     def contains(self, value: Any) -> bool:
-        """Whether every space contains its part."""
-        return set(value) == set(self.spaces) and all(self[k].contains(v) for k, v in value.items())
+        """Whether it is a mapping of the same names, and every space contains its part."""
+        return (isinstance(value, Mapping) and set(value) == set(self.spaces)
+                and all(self[name].contains(part) for name, part in value.items()))
+
+    def __contains__(self, value: object) -> bool:
+        """Of a sample, as contains(); of a name, whether there is such a space."""
+        return value in self.spaces if isinstance(value, str) else self.contains(value)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Dict) and self.spaces == other.spaces
+
+    __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
         return f"Dict({self.spaces})"

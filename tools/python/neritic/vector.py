@@ -31,7 +31,8 @@ values each way, a largest current, deviations of what is observed."""
 
 
 class VectorEnv:
-    """Environments of one vehicle each, stepped together. Made by neritic.vector().
+    """Environments of one vehicle each, stepped together. Made by neritic.vector(). It is no subclass of
+    Gymnasium's, which need not be installed; neritic.gym has one.
 
     Observations are a dict of float32 arrays, one row an environment, in the vehicle's own axes
     (forward, left, up):
@@ -47,6 +48,7 @@ class VectorEnv:
 
     metadata: dict[str, Any] = {"render_modes": []}
     render_mode = None
+    spec = None
 
     def __init__(self, task: str, num_envs: int, core: _core.VectorEnv, max_steps: int, step_s: float,
                  autoreset: str, copy: bool) -> None:
@@ -76,32 +78,43 @@ class VectorEnv:
                          "truncated": self._truncated.view(np.uint8)})
         self.reset(seed=0)
 
+    def __enter__(self) -> VectorEnv:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
     @property
     def unwrapped(self) -> VectorEnv:
         """Itself."""
         return self
 
-    def reset(self, *, seed: Union[None, int, Sequence[int]] = None,
+    def reset(self, *, seed: Union[None, int, Sequence[Optional[int]]] = None,
               options: Optional[Mapping[str, Any]] = None) -> tuple[dict[str, NDArray[np.float32]], dict[str, Any]]:
-        """All environments begin an episode: observations and an empty info. seed: one for all, or one
-        each; None: the next of a row. The same seeds and actions give the same bits, on any number of
-        threads."""
+        """All environments begin an episode: observations and an empty info. seed: a number, of which environment i
+        gets seed + i; or one for each. An environment without a seed (None) goes on to its next episode. Until a
+        first seed it is 0. Seed and actions give an environment its bits, whatever others are beside it, on any
+        number of threads."""
         self._check_open()
         if options:
             raise BadInput(f"options: found {shown(options)}; accepted: none")
-        rows = hasattr(seed, "__iter__") and not isinstance(seed, (str, bytes)) and getattr(seed, "ndim", 1) != 0
-        seeds = [self._next_seed] if seed is None else list(seed) if rows else [seed]
-        if not seeds:
-            raise BadInput("seed: found none; accepted: one for all, or one each")
-        seeds = [whole("seed", one, 0, 2**64 - 1) for one in seeds]
-        self._next_seed = (seeds[0] + 1) % 2**64
+        seeds: list[Optional[int]]
+        if hasattr(seed, "__iter__") and not isinstance(seed, (str, bytes)) and getattr(seed, "ndim", 1) != 0:
+            seeds = [None if one is None else whole("seed", one, 0, 2**64 - 1) for one in seed]
+            if len(seeds) != self.num_envs:
+                raise BadInput(f"seed: found {len(seeds)} seeds; accepted: a number, or one for each of {self.num_envs}")
+        elif seed is None:
+            seeds = [None] * self.num_envs
+        else:
+            first = whole("seed", seed, 0, 2**64 - 1)
+            seeds = [(first + i) % 2**64 for i in range(self.num_envs)]
         self._core.reset(seeds)
         return self._given(self._observation), {}
 
     def step(self, actions: ArrayLike) -> tuple[dict[str, NDArray[np.float32]], NDArray[np.float32],
                                                 NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
-        """Observations, rewards, terminated, truncated, info. actions: [num_envs, actions] from -1 to 1:
-        shares of each thruster's largest force or, with control="wrench", of the largest surge, sway,
+        """Observations, rewards, terminated, truncated, info. actions: [num_envs, actions] from -1 to 1, others are
+        cut to that: shares of each thruster's largest force or, with control="wrench", of the largest surge, sway,
         heave, roll, pitch, yaw.
 
         An episode that ended begins anew in the next step, which ignores its action and rewards 0. With
@@ -128,7 +141,7 @@ class VectorEnv:
         """That share a step."""
         return self._core.threads
 
-    def close(self) -> None:
+    def close(self, **_: Any) -> None:
         """Ends it: what follows is refused."""
         self.closed = True
 
@@ -159,11 +172,8 @@ class VectorEnv:
     def _given(self, arrays: Mapping[str, NDArray[np.float32]]) -> dict[str, NDArray[np.float32]]:
         return {name: array.copy() if self._copy else array for name, array in arrays.items()}
 
-    _next_seed = 0
-
-
 def vector(task: str, num_envs: int = 1, *, vehicle: Union[None, str, os.PathLike[str]] = None,
-           step_s: float = 0.04, max_steps: int = 500, method: str = "split", substeps: int = 1,
+           step_s: float = 0.04, max_steps: int = 500, method: str = "split", substeps: Optional[int] = None,
            thrust_table: bool = True, randomise: Union[bool, Mapping[str, float]] = True,
            control: str = "thrusters", autoreset: str = "next_step", copy: bool = False,
            threads: int = 0) -> VectorEnv:
@@ -174,8 +184,8 @@ def vector(task: str, num_envs: int = 1, *, vehicle: Union[None, str, os.PathLik
     shark   keep between a diver and a shark
 
     vehicle: its file; None: a BlueROV2 Heavy. step_s, max_steps: of an episode. method, substeps: "split"
-    computes the thrusters' lag exactly and the rest by RK4 in `substeps` substeps; "guarded" is what a scene's
-    simulation does. `python3 -m neritic.tradeoff` shows error over cost. thrust_table: commands in whole
+    computes the thrusters' lag exactly and the rest by RK4 in `substeps` substeps (None: none longer than 0.04 s; at
+    most 0.1 s is accepted); "guarded" is what a scene's simulation does. `python3 -m neritic.tradeoff` shows error over cost. thrust_table: commands in whole
     microseconds, as in a scene. randomise: True (RANDOMISED), False, or a dict of some of its values.
     control: "thrusters" or "wrench". autoreset: "next_step" or "same_step". threads: 0 for all cores."""
     for name, found, accepted in (("control", control, ("thrusters", "wrench")),
@@ -185,7 +195,7 @@ def vector(task: str, num_envs: int = 1, *, vehicle: Union[None, str, os.PathLik
     num_envs, max_steps = whole("num_envs", num_envs, 1, MOST_ENVS), whole("max_steps", max_steps, 1, 2**31 - 1)
     file = path("vehicle", vehicle) if vehicle is not None else str(_vehicle_file())
     core = _core.VectorEnv(word("task", task), num_envs, file, number("step_s", step_s), max_steps, word("method", method),
-                           whole("substeps", substeps, 1, 1000), flag("thrust_table", thrust_table), _random(randomise),
+                           0 if substeps is None else whole("substeps", substeps, 1, 1000), flag("thrust_table", thrust_table), _random(randomise),
                            control == "wrench", autoreset == "same_step", whole("threads", threads, 0, 256))
     return VectorEnv(task, num_envs, core, max_steps, step_s, autoreset, flag("copy", copy))
 

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from .agents import Agent, Diver, TrackedObject, Vehicle
-from .arguments import flag, number, numbers, path as path_of, shown, whole, word
+from .agents import MOST_NUMBERS, Agent, Diver, TrackedObject, Vehicle
+from .arguments import finite, flag, number, numbers, path as path_of, shown, whole, word
 from .errors import BadInput, Error
-from .observations import MODEM_EVENTS, Image, Message, Observations, Reading, Stream, Truth, offsets_of
+from .observations import MODEM_EVENTS, Image, Message, Observations, Reading, Stream, Table, Truth, offsets_of
 
 MOST_STEPS = 100_000_000
 """Steps of one tick, at most."""
@@ -35,7 +35,10 @@ class World:
                          for name, owner, kind, frame, sort, fields, rate, encoding in core.streams]
         self._places = {stream.name: i for i, stream in enumerate(self._streams)}
         self._offsets = [offsets_of(stream.fields) for stream in self._streams]
+        self._table = Table(self._streams, self._places, self._offsets)
         self._callbacks: dict[str, list[Callable[[Any], None]]] = {}
+        # What came for callbacks and was not given to them: with callbacks that are left of it, or all (None).
+        self._came: deque[tuple[Union[Reading, Image], Optional[list[Callable[[Any], None]]]]] = deque()
         self._images: dict[str, Image] = {}  # the newest; another one with each change
         self._senses = False  # images are wanted
         self._agents: dict[str, Agent] = {}
@@ -110,32 +113,41 @@ class World:
 
     def tick(self, steps: int = 1) -> Observations:
         """Runs this number of physics steps, up to MOST_STEPS, and returns what has arrived by then. Callbacks run
-        after them."""
-        of = self._core.tick(whole("tick: steps", steps, 0, MOST_STEPS))
-        self._after_tick()
-        return Observations(self, of, self._images)
+        after them. Ctrl-C ends it after a step: the steps until then are done."""
+        of = self._run(whole("tick: steps", steps, 0, MOST_STEPS))
+        self._call_back()
+        return Observations(self._table, of, self._images)
 
     def observe(self) -> Observations:
         """Returns what has arrived so far, without a step."""
-        return Observations(self, self._core.newest(), self._images)
+        return Observations(self._table, self._core.newest(), self._images)
 
     def ticks(self, steps: int = 1, count: Optional[int] = None) -> AsyncIterator[Observations]:
         """Ticks of this number of steps, as an asynchronous iterator. Each runs on another thread, so that the
-        event loop continues. count: the number of ticks; None: without end."""
+        event loop continues. count: the number of ticks; None: without end. Cancelled, it ends after a step, and the
+        world can be used at once."""
         return self._ticks(whole("ticks: steps", steps, 0, MOST_STEPS),
                            None if count is None else whole("ticks: count", count, 0, 2**63 - 1))
 
     async def _ticks(self, steps: int, count: Optional[int]) -> AsyncIterator[Observations]:
         done = 0
         while count is None or done < count:
-            of = await asyncio.get_running_loop().run_in_executor(None, self._core.tick, steps)
-            self._after_tick()
-            yield Observations(self, of, self._images)
+            running = asyncio.get_running_loop().run_in_executor(None, self._run, steps)
+            try:
+                of = await asyncio.shield(running)
+            except asyncio.CancelledError:
+                self._core.stop()
+                await asyncio.wait([running])
+                running.exception()  # that it was stopped is no news
+                raise
+            self._call_back()
+            yield Observations(self._table, of, self._images)
             done += 1
 
     def on(self, stream: str, call: Callable[[Any], None]) -> None:
         """Calls `call(reading)` after each tick, for every reading (or image) of the stream that arrived
-        in it, in the order of arrival. Images must be wanted with keep=True."""
+        in it, in the order of arrival. All are called, then the first exception of one is raised. Images must be
+        wanted with keep=True; of a tick the newest 64 come, and counts() has the others."""
         place = self._place(stream)
         if not callable(call):
             raise BadInput(f"on: {stream}: found {shown(call)}; accepted: a function of one reading")
@@ -152,7 +164,8 @@ class World:
 
     def link(self, stream: str, delay: float = 0.0, jitter: float = 0.0, loss: float = 0.0) -> None:
         """Readings of the stream arrive `delay` seconds late plus up to `jitter` (evenly distributed), and a share
-        `loss` never. The measurements and their stamps do not change."""
+        `loss` never. The measurements and their stamps do not change. Readings that overtake others come as they arrive; an
+        observation has the one that was measured last. Inputs have no link: a command acts with the next step."""
         place = self._place(stream)
         row = numbers(f"link: {stream}: delay, jitter, loss", (delay, jitter, loss), 3)
         self._core.set_link(place, *row.tolist())
@@ -160,7 +173,7 @@ class World:
     # Images.
 
     def images(self, *streams: str, rate: float = 0.0, keep: bool = False) -> None:
-        """Asks for images of these streams from the next tick on, "eye/color" or "sonar/echoes", at `rate` Hz
+        """Asks for images of these streams from the next tick on, "eye/color" or "rov_sonar/echoes", at `rate` Hz
         or the sensor's own rate (0). The first call makes a Vulkan device. keep: callbacks get every
         image, not the newest of each tick alone."""
         rate, keep = float(numbers("images: rate", rate, 1)[0]), flag("images: keep", keep)
@@ -181,13 +194,16 @@ class World:
         return self._core.save()
 
     def restore(self, state: Union[bytes, bytearray, memoryview, NDArray[np.uint8]]) -> None:
-        """Continues from a saved state of this scene. Readings on their way are dropped; commands end."""
+        """Continues from a saved state of this scene and seed. Readings on their way are dropped, and a stream is empty until
+        its sensor reads again. A command that acted when it was saved goes on, until release() or another command."""
         try:
             state = bytes(memoryview(state))
         except (TypeError, BufferError):
             raise BadInput(f"restore: found {shown(state)}; accepted: bytes that save() gave") from None
+        self._check_recording("restore")
         self._core.restore(state)
         self._images = {}
+        self._came.clear()
         for mail in self._mail.values():
             mail.clear()
 
@@ -196,17 +212,24 @@ class World:
         """Records what follows: `with world.record("out/run"): ...` writes out/run.mcap, which
         `neritic dive --replay` repeats and ROS 2 tools read, and out/run.csv."""
         name = path_of("record", path)
+        self._check_recording("record")
         self._check_record(name)
         self._core.record(name)
         try:
             yield
         except BaseException as error:
             try:
-                self._core.stop_recording()
+                if not self._core.closed:
+                    self._core.stop_recording()
             except Error as failed:  # beside the block's own exception, which is what ended it
                 error.add_note(f"the recording: {failed}")
             raise
-        self._core.stop_recording()
+        if not self._core.closed:  # close() ended it
+            self._core.stop_recording()
+
+    def _check_recording(self, what: str) -> None:
+        if self._core.recording:
+            raise BadInput(f"{what}: found a recording that goes on; accepted: the end of its `with` block before it")
 
     def _check_record(self, name: str) -> None:
         """Refuses a file that could not be written, before anything runs."""
@@ -229,16 +252,21 @@ class World:
         source = word(f"inject: {stream}: source", source)
         if stamp is not None:
             stamp = number(f"inject: {stream}: stamp", stamp, -1e9, 1e9)
+        row = finite(f"inject: {stream}", numbers(f"inject: {stream}", values), MOST_NUMBERS)
         try:
-            self._core.inject(stream, numbers(f"inject: {stream}", values), source, stamp)
+            self._core.inject(stream, row, source, stamp)
         except BadInput:
             if stamp is None or stamp <= self.observe().time:
                 raise
             raise BadInput(f"inject: {stream}: stamp: found {stamp:g} s; accepted: up to now, {self.time:g} s") from None
 
     def close(self) -> None:
-        """Ends the world and its recording."""
+        """Ends the world and its recording. A tick of another thread ends after its step."""
         self._core.close()
+
+    def counts(self) -> dict[str, int]:
+        """Losses: dropped_readings, of readings and images that came faster than they were taken."""
+        return {"dropped_readings": self._core.dropped}
 
     def __enter__(self) -> World:
         return self
@@ -256,35 +284,61 @@ class World:
     def _place(self, stream: str) -> int:
         return self._core.stream(word("stream", stream))
 
-    def _take_images(self) -> None:
-        taken = self._core.take_images() if self._senses else []
-        if not taken:
-            return
-        newest = dict(self._images)
-        for one in taken:
-            image = Image(one, self._streams[one.stream])
-            newest[image.stream] = image
-            for call in self._callbacks.get(image.stream, ()):
-                call(image)
-        self._images = newest  # observations that were given keep theirs
+    def _run(self, steps: int) -> Any:
+        """The steps, in parts between which what arrived is taken, so that none of it is lost."""
+        end = self._core.step + steps
+        while True:
+            of = self._core.tick(end - self._core.step)
+            self._take()
+            if of.step >= end:
+                return of
 
-    def _after_tick(self) -> None:
-        if self._senses or self._callbacks or self._mail:
+    def _take(self) -> None:
+        """Takes what arrived from the core: messages into the mail, images and all for callbacks."""
+        if self._senses:
             self._take_images()
-            self._call_back()
-
-    def _call_back(self) -> None:
         if not self._callbacks and not self._mail:
             return
         arrived = self._core.take_arrived()
         for i in range(len(arrived)):
             place = arrived.header(i)[0]
-            stream = self._streams[place]
-            reading = Reading(arrived, i, stream, self._offsets[place])
-            if stream.name in self._mail:
+            reading = Reading(arrived, i, self._streams[place], self._offsets[place])
+            if reading.stream in self._mail:
                 self._sort_mail(reading)
-            for call in self._callbacks.get(stream.name, ()):
-                call(reading)
+            if reading.stream in self._callbacks:
+                self._came.append((reading, None))
+
+    def _take_images(self) -> None:
+        newest = dict(self._images)
+        for one in self._core.take_images():
+            image = Image(one, self._streams[one.stream])
+            if image.stream not in newest or image.stamp >= newest[image.stream].stamp:
+                newest[image.stream] = image
+            if image.stream in self._callbacks:
+                self._came.append((image, None))
+        self._images = newest  # observations that were given keep theirs
+
+    def _call_back(self) -> None:
+        """Gives all that came to its callbacks; then the first of their exceptions goes on. What ends the program, as
+        Ctrl-C does, goes on at once, and the rest comes with the next tick."""
+        first, more = None, 0
+        while self._came:
+            came, calls = self._came.popleft()
+            left = list(self._callbacks.get(came.stream, ())) if calls is None else calls
+            while left:
+                call = left.pop(0)
+                try:
+                    call(came)
+                except Exception as error:
+                    more += first is not None
+                    first = first or error
+                except BaseException:
+                    self._came.appendleft((came, left))
+                    raise
+        if first is not None:
+            if more:
+                first.add_note(f"{more} more callbacks of this tick raised exceptions")
+            raise first
 
     def _sort_mail(self, reading: Reading) -> None:
         if MODEM_EVENTS[int(reading.event)] != "received" or reading.message_kind:
