@@ -193,6 +193,28 @@ class Remote(unittest.TestCase):
             self.assertEqual(done.returncode, 2)
             self.assertIn(words, done.stderr)
 
+    def test_a_client_that_does_not_tick_gets_images_mail_and_callbacks(self):
+        scene = str(ROOT / "assets/scenes/talk.toml")
+        with Served(scene=scene) as address, neritic.connect(address) as ticks, neritic.connect(address) as looks:
+            heard = []
+            looks.on("diver/motion", heard.append)
+            ticks.tick(336)
+            ticks["diver"].send("look", to="rov")
+            ticks.tick(1200)
+            looks.observe()
+            self.assertEqual([message.data for message in looks["rov"].receive()], [b"look"])
+            self.assertEqual(heard, [])
+            looks.wait(0)
+            self.assertEqual(heard[-1].sequence - heard[0].sequence, len(heard) - 1)
+            self.assertGreater(len(heard), 100)
+        with Served() as address, neritic.connect(address) as ticks, neritic.connect(address) as looks:
+            try:
+                looks.images("rov_sonar/echoes", rate=2)
+            except neritic.Error as error:
+                self.skipTest(str(error))
+            ticks.tick(240)
+            self.assertAlmostEqual(looks.observe()["rov_sonar/echoes"].stamp, ticks.time, delta=0.6)
+
     def test_a_wait_ends_with_the_steps_of_others(self):
         with Served("--realtime") as address, neritic.connect(address) as there, \
                 unittest.mock.patch.object(neritic.remote, "_STEPS", 10), unittest.mock.patch.object(neritic.remote, "_WAIT_S", 0.01):

@@ -7,6 +7,7 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/math.hpp"
+#include "testbed/motion/live_physics.hpp"
 #include "tests/support/support.hpp"
 
 namespace neritic::testbed {
@@ -140,6 +141,30 @@ TEST_F(WorldTest, ACommandThatWasSavedIsReleasedOrFollowedByAnother) {
       EXPECT_EQ(end(*world), hash) << release;
       EXPECT_EQ(world->truth("rov")->thruster_n, truth.thruster_n);
     }
+  }
+}
+
+// A dive with a display that goes on from it: clients end what clients began; the display's own
+// keys give back what they took.
+TEST_F(WorldTest, ADiveGoesOnWithASavedCommandThatItsClientsEnd) {
+  for (const bool keys : {false, true}) {
+    const auto first = open();
+    ASSERT_TRUE(first
+                    ->command("rov", "thrusters", std::vector<double>(8, 5.0), 0.0,
+                              keys ? "keyboard" : "client")
+                    .ok());
+    ASSERT_TRUE(first->tick(20).ok());
+    const auto scene = scene::load_scene(scratch_ / "s.toml");
+    ASSERT_TRUE(scene.ok());
+    auto physics = PhysicsWorld::create(*scene).value();
+    const auto saved = parse_state(physics->state_format(), first->save(), "saved");
+    ASSERT_TRUE(saved.ok());
+    const auto live = LivePhysics::create(std::move(physics), {.start = *saved});
+    const auto dive = World::attach(*live, *scene, "s.toml").value();
+    ASSERT_TRUE(dive->release("rov").ok());
+    for (int i = 0; i < 24; ++i) live->advance();
+    const double force_n = live->newest().state.vehicles()[0].command_n[0];
+    EXPECT_NEAR(force_n, keys ? 5.0 : 0.0, 0.2);
   }
 }
 

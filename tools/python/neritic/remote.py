@@ -461,8 +461,10 @@ class RemoteWorld(World):
         return of
 
     def wait(self, steps: int = 1, most: float = 60.0) -> None:
-        """Waits until `steps` steps of others are done, at most `most` seconds."""
+        """Waits until `steps` steps of others are done, at most `most` seconds. Callbacks run after them."""
         self._core.wait(whole("wait: steps", steps, 0, MOST_STEPS), number("wait: most", most, 0.0))
+        self._take()
+        self._call_back()
 
     def poses(self) -> dict[str, Truth]:
         """The true motion of every agent, in one call; without the current, forces and contacts."""

@@ -120,7 +120,9 @@ class World:
 
     def observe(self) -> Observations:
         """Returns what has arrived so far, without a step."""
-        return Observations(self._table, self._core.newest(), self._images)
+        of = self._core.newest()
+        self._take()
+        return Observations(self._table, of, self._images)
 
     def ticks(self, steps: int = 1, count: Optional[int] = None) -> AsyncIterator[Observations]:
         """Ticks of this number of steps, as an asynchronous iterator. Each runs on another thread, so that the
