@@ -2,9 +2,11 @@
 //
 //   all little-endian, nothing aligned
 //   8 bytes "NRTCSAVE"   u32 version   u32 sources
-//   u64 scene hash (scene_hash.hpp)    u64 seed   u64 layout hash: names, types and counts of all
-//   fields u64 step   f64 time_s   u64 bytes of state   u64 bytes of inputs the state's block, the
-//   inputs' block, each source's name (u8 length, printable ASCII), u64 hash of all bytes before
+//   u64 scene hash (scene_hash.hpp)    u64 seed
+//   u64 layout hash: names, types and counts of all fields
+//   u64 step   f64 time_s   u64 bytes of state   u64 bytes of inputs
+//   the state's block, the inputs' block, each source's name (u8 length, printable ASCII)
+//   u64 hash of all bytes before
 //
 // Pure functions; any thread.
 #pragma once
