@@ -6,9 +6,15 @@
 
 namespace neritic::diver {
 
-// How far the levels of odd bursts lie from those of even ones, a drift set apart: squares of
-// deviations over their error, the mean of all bands, of the quarter of a burst's period where it
-// is largest. Bursts that are alike give 1 to 5. 0: fewer than eight bursts, which cannot tell.
-double alternation(const std::vector<Levels>& bands, double bursts_hz);
+// The phase of a rhythm near hz at each frame, in turns, from 0 on, never falling: breaths are not
+// equally long. It follows what four periods say together; `components` as in breath_rhythm.cpp.
+Levels turns_of(const std::vector<Levels>& components, double hz);
+
+inline constexpr std::size_t kLeastBursts = 4;
+
+// How far the levels of odd turns lie from those of even ones, a drift set apart, as a deviate of
+// the standard normal distribution: 2 and more by chance in 2 % of all rhythms in which turns do
+// not alternate. Fewer than kLeastBursts turns tell nothing: 0.
+double alternation(const std::vector<Levels>& bands, const Levels& turns);
 
 }  // namespace neritic::diver

@@ -143,14 +143,15 @@ struct WindowEstimate {
   BreathEstimate breath;
   bool asks_for_more = false;
   bool slower = false;  // asks for it since a breath is longer
-  bool doubtful = false;
+  bool doubtful = false, weak = false;
 };
 
 void by_rhythm(const std::vector<Levels>& bands, WindowEstimate& out) {
   const Rhythm rhythm = common_rhythm(bands);
   out.breath.rate_bpm = 60.0 * rhythm.rate_hz;
   out.breath.confidence = rhythm.confidence;
-  out.asks_for_more = rhythm.slower || rhythm.alike;
+  out.asks_for_more = rhythm.slower || rhythm.unsure || rhythm.weak;
+  out.weak = rhythm.weak;
   out.slower = rhythm.slower;
   out.doubtful = rhythm.doubtful;
 }
@@ -159,7 +160,7 @@ void by_rhythm(const std::vector<Levels>& bands, WindowEstimate& out) {
 BreathEstimate unsure(BreathEstimate breath) {
   breath.breathing = 0;
   breath.rate_bpm = 0.0;
-  breath.confidence = std::min(breath.confidence, kAlikeConfidence);
+  breath.confidence = std::min(breath.confidence, kUnsureConfidence);
   return breath;
 }
 
@@ -289,21 +290,25 @@ BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const Breath
 BreathEstimate estimate_newest_breath(std::span<const BreathFrame> history, double window_s,
                                       const BreathBands& front, BreathEstimator estimator) {
   const auto window = static_cast<std::size_t>(std::lround(window_s * kBreathFrames_hz));
-  const WindowEstimate newest = estimate_window(history.last(std::min(window, history.size())),
-                                                front, estimator, confidence_asked(estimator));
+  const std::size_t heard = std::min(window, history.size());
+  const double heard_s = static_cast<double>(heard) / kBreathFrames_hz;
+  const WindowEstimate newest =
+      estimate_window(history.last(heard), front, estimator, confidence_asked(estimator));
   // Two breaths of half the rate do not fit into the window: a longer one sees whether they are
   // what repeats.
   const bool may_be_halves = estimator == BreathEstimator::kMultiBand &&
                              newest.breath.breathing != 0 &&
-                             newest.breath.rate_bpm / 60.0 < 2.0 * slowest_breath_hz(window_s);
+                             newest.breath.rate_bpm / 60.0 < 2.0 * slowest_breath_hz(heard_s);
   const auto enough = static_cast<std::size_t>(2.0 / kSlowestBreath_hz * kBreathFrames_hz);
   if (!newest.asks_for_more && !may_be_halves) return newest.breath;
   if (history.size() <= window) {
+    if (newest.weak && history.size() >= enough) return unsure(newest.breath);
     if (may_be_halves && newest.doubtful && history.size() < enough) return unsure(newest.breath);
     return newest.breath;
   }
   const WindowEstimate all =
       estimate_window(history, front, estimator, confidence_asked(estimator));
+  if (all.weak) return unsure(all.breath);
   if (newest.asks_for_more)
     return newest.slower && history.size() < enough ? unsure(all.breath) : all.breath;
   const double share = all.breath.rate_bpm / newest.breath.rate_bpm;

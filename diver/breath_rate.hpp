@@ -73,7 +73,8 @@ BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const Breath
                                BreathEstimator estimator);
 
 // The same for the last seconds of a longer history. kMultiBand: if the breath is longer than the
-// window can measure, or every burst is like the one before, the whole history is the window.
+// window can measure, or it is not sure whether a rate is the breath's or that of its halves, the
+// whole history is the window.
 BreathEstimate estimate_newest_breath(std::span<const BreathFrame> history, double window_s,
                                       const BreathBands& front, BreathEstimator estimator);
 

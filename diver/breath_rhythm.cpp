@@ -19,26 +19,27 @@ constexpr std::size_t kMostComponents = 3;
 constexpr double kLeastShare = 1e-9;
 // 0 finds a breath with two equal halves twice, 1 finds it half as often; 0.5 lies between.
 constexpr double kShareOfDouble = 0.5;
-// If a line at half of the frequency exceeds the median of all by this factor, a whole breath has
-// twice the period. On the recordings none does; chance alone reaches 5.5.
+// Bursts alternate, or may, above these deviates of the standard normal distribution
+// (breath_halves.hpp): a few bursts never deviate far, many do so by chance more often. 1300 made
+// breaths without alternation reach 3.6, 1 % of them 2.9; in and out that vary by up to 15 % from
+// breath to breath reach 5 and more in windows of 60 s.
+constexpr double kAlternates = 3.6, kManyAlternate = 4.2, kMayAlternate = 3.2,
+                 kFewMayAlternate = 2.5;
+constexpr double kFewBursts = 9.0, kManyBursts = 20.0;
+// And above which the two halves of a breath differ, so that it is not two breaths.
+constexpr double kHalvesDiffer = 2.0;
+// Where so few bursts tell nothing, a line at half of the frequency tells that exceeds the median
+// of all by this factor: on the recordings none does; chance alone reaches 5.5.
 constexpr double kHalfLine = 6.0;
-// Below 0.1 Hz levels drift: there the line at half of the frequency must be this much stronger
-// than the best. Slow regulator breath has 1.3 and more; 2 of 150 windows of faster breath on the
-// recordings have more than 1.
-constexpr double kSlowHalf = 1.25;
-// One sound alone repeats where loudness has this share of its power in the line and not much more
-// at its double, and colours have at most this share of the loudness's line: made sounds have up to
-// 0.4, seldom 0.7, the recordings, whose halves differ in colour, 0.33 and more. Bands that go
-// against the loudness tell sounds from one another.
-constexpr double kLeastLoudLine = 0.1, kMostDouble = 1.5, kMostAgainst = 0.1;
-constexpr double kLittleColour = 0.4, kSomeColour = 0.7;
-// Shorter windows leave more colour to chance.
-constexpr double kColourWindow_s = 20.0;
-// A hump that is wider than half of its period has its double's trough at its top; a narrower one,
-// or two humps of different height, the double's top, with more than this share.
-constexpr double kNarrow = 0.1;
-// Bursts that differ by chance alone reach 5, whole breaths of the recordings 23.
-constexpr double kAlternates = 8.0, kSurelyAlternates = 40.0;
+// Every burst sounds alike if at most this share of their power goes against the loudness: nine in
+// ten made bursts that are alike have up to 0.04, a regulator's hiss and bubbles 0.06 and more.
+constexpr double kOtherSounds = 0.07;
+// A hump that is wider than half of its period has its double's trough at its top.
+constexpr double kNarrow = 0.0;
+// Fewer turns are no rhythm that is sure.
+constexpr double kLeastTurns = 1.9;
+// Half of a rate may be measured somewhat below the slowest breath.
+constexpr double kNearlySlowest = 0.9;
 // Lines are searched in steps of the window's resolution divided by this number.
 constexpr double kLinesAResolution = 8.0;
 constexpr int kMostSweeps = 30;
@@ -112,39 +113,71 @@ double share_of_arrhythmic_below(double share, double window_s) {
   return std::exp(-std::exp(-(share * window_s - location) / kScale));
 }
 
-// Turns the first component so that louder is up, and says whether it is the loudness: bands that
-// go against it tell sounds from one another.
-bool turn_to_loudness(const std::vector<Levels>& bands, Levels& component) {
-  double with = 0.0, against = 0.0;
+// Bands by the burst that they have in each turn: the loudness is their sum, each by its share of
+// what most have in common. `others`: the share of all power in bands that are louder when the
+// loudness is softer, or that turn at right angles to it: the sounds of a turn differ in colour.
+struct Bursts {
+  Levels loudness;
+  double others = 0.0;
+};
+Bursts bursts_of(const std::vector<Levels>& bands, const Levels& turns) {
+  std::vector<std::complex<double>> lines;
+  std::complex<double> most = 0.0;
+  double all = 0.0, alike = 0.0;
   for (const Levels& band : bands) {
-    const double along = std::inner_product(band.begin(), band.end(), component.begin(), 0.0);
-    (along > 0.0 ? with : against) += std::abs(along);
+    std::complex<double> line = 0.0;
+    for (std::size_t i = 0; i < band.size(); ++i)
+      line += std::polar(band[i], -2.0 * kPi * turns[i]);
+    lines.push_back(line);
+    most += line * std::abs(line);
+    all += std::norm(line);
   }
-  if (against > with)
-    for (double& level : component) level = -level;
-  return std::min(with, against) <= kMostAgainst * std::max(with, against);
+  Bursts out{Levels(turns.size(), 0.0)};
+  if (!(std::abs(most) > 0.0)) return out;
+  for (std::size_t band = 0; band < bands.size(); ++band) {
+    const double with = (lines[band] * std::conj(most)).real() / std::abs(most);
+    alike += std::pow(std::max(with, 0.0), 2.0);
+    for (std::size_t i = 0; i < turns.size(); ++i) out.loudness[i] += with * bands[band][i];
+  }
+  out.others = 1.0 - alike / all;
+  return out;
 }
 
-// The colours' share of the loudness's line; infinite where the line is not of one hump a period.
-double colour_at(const std::vector<std::vector<double>>& powers, std::size_t line) {
-  const double loud = powers[0][line];
-  double colour = 0.0;
-  for (std::size_t i = 1; i < powers.size(); ++i) colour += powers[i][line];
-  const bool one_hump = loud >= kLeastLoudLine && powers[0][2 * line] <= kMostDouble * loud;
-  return one_hump ? colour / loud : std::numeric_limits<double>::infinity();
-}
-
-// The share of the second harmonic that has its top where the first one has: negative for its
-// trough there.
-double double_at_top(const Levels& loudness, double hz) {
+// The share of the second harmonic that has its top where the first one has; negative: its trough.
+double double_at_top(const Levels& loudness, const Levels& turns) {
   std::complex<double> first = 0.0, second = 0.0;
   for (std::size_t i = 0; i < loudness.size(); ++i) {
-    const double turns = static_cast<double>(i) / kBreathFrames_hz * hz;
-    first += std::polar(loudness[i], -2.0 * kPi * turns);
-    second += std::polar(loudness[i], -4.0 * kPi * turns);
+    first += std::polar(loudness[i], -2.0 * kPi * turns[i]);
+    second += std::polar(loudness[i], -4.0 * kPi * turns[i]);
   }
   const std::complex<double> turned = second * std::conj(first * first);
   return turned.real() / std::max(std::pow(std::abs(first), 3.0), 1e-300);
+}
+
+// One sound that comes once a turn, so wide that it may as well be half of a breath.
+bool bursts_are_alike(const std::vector<Levels>& bands, const Levels& turns) {
+  const Bursts bursts = bursts_of(bands, turns);
+  return bursts.others < kOtherSounds && double_at_top(bursts.loudness, turns) < kNarrow;
+}
+
+// How far the halves of turns differ; infinity: too few turns to say.
+double halves_differ(const std::vector<Levels>& bands, const Levels& turns) {
+  Levels halves = turns;
+  for (double& turn : halves) turn *= 2.0;
+  return halves.back() > kLeastBursts ? alternation(bands, halves)
+                                      : std::numeric_limits<double>::infinity();
+}
+
+// The power of each line; a window must hold one breath at least to show its line.
+bool has_half_line(const std::vector<double>& lines, std::size_t best, std::size_t slowest,
+                   std::size_t slowest_half) {
+  constexpr auto kReach = static_cast<std::ptrdiff_t>(kLinesAResolution / 4.0);
+  if (best / 2 < slowest_half) return false;
+  const auto half = lines.begin() + static_cast<std::ptrdiff_t>(best / 2);
+  std::vector<double> sorted(lines.begin() + static_cast<std::ptrdiff_t>(slowest), lines.end());
+  const auto median = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::ranges::nth_element(sorted, median);
+  return *std::max_element(half - kReach, half + kReach + 1) > kHalfLine * *median;
 }
 
 }  // namespace
@@ -175,66 +208,51 @@ std::vector<double> line_powers(const Levels& x, double step_hz, std::size_t cou
 }
 
 Rhythm common_rhythm(const std::vector<Levels>& bands) {
-  std::vector<Levels> components = components_of(bands);
+  const std::vector<Levels> components = components_of(bands);
   if (components.empty()) return {};
   const auto frames = static_cast<double>(bands[0].size());
-  const double step_hz = kBreathFrames_hz / frames / kLinesAResolution;
+  const double window_s = frames / kBreathFrames_hz;
+  const double step_hz = 1.0 / window_s / kLinesAResolution;
   const auto line_of = [&](double hz) {
     return static_cast<std::size_t>(std::ceil(hz / step_hz - 1e-9));
   };
-  const std::size_t slowest = line_of(slowest_breath_hz(frames / kBreathFrames_hz));
+  const std::size_t slowest = line_of(slowest_breath_hz(window_s));
   const auto fastest = static_cast<std::size_t>(std::floor(kFastestBreath_hz / step_hz));
   std::vector<double> together(2 * (fastest + 1) + 1, 0.0);
-  std::vector<std::vector<double>> powers;
   for (const Levels& component : components) {
-    powers.push_back(line_powers(component, step_hz, together.size()));
-    for (std::size_t i = 0; i < together.size(); ++i) {
-      powers.back()[i] *=
-          2.0 / (frames * frames);  // a pure line has half of the square of its frames
-      together[i] += powers.back()[i] / static_cast<double>(components.size());
-    }
+    const std::vector<double> powers = line_powers(component, step_hz, together.size());
+    // A pure line has half of the square of its frames.
+    for (std::size_t i = 0; i < together.size(); ++i)
+      together[i] += powers[i] * 2.0 / (frames * frames) / static_cast<double>(components.size());
   }
   const auto at = [&](std::size_t i) { return together[i] + kShareOfDouble * together[2 * i]; };
   std::size_t best = 0;
   for (std::size_t i = slowest; i <= fastest; ++i)
     if (at(i) >= at(i - 1) && at(i) > at(i + 1) && (best == 0 || at(i) > at(best))) best = i;
   if (best == 0) return {};
-  const double confidence = share_of_arrhythmic_below(at(best), frames / kBreathFrames_hz);
-  double line = static_cast<double>(best) + parabola_top(at(best - 1), at(best), at(best + 1));
-  constexpr auto kReach = static_cast<std::size_t>(kLinesAResolution / 4.0);
-  bool slower = false, alike = false, doubtful = false;
-  // A window must hold one breath at least to show its line.
-  const double slowest_half_hz = std::max(kSlowestBreath_hz, kBreathFrames_hz / frames);
-  if (best / 2 >= line_of(slowest_half_hz)) {
-    const auto half = together.begin() + static_cast<std::ptrdiff_t>(best / 2);
-    const double highest = *std::max_element(half - kReach, half + kReach + 1);
-    std::vector<double> sorted(together.begin() + static_cast<std::ptrdiff_t>(slowest),
-                               together.end());
-    std::ranges::nth_element(sorted,
-                             sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2));
-    const bool stands_out = highest > kHalfLine * sorted[sorted.size() / 2];
-    if (stands_out && (best / 2 >= line_of(0.1) || highest > kSlowHalf * at(best))) {
-      line *= 0.5;
-      slower = best / 2 < slowest;
-    } else {
-      doubtful = stands_out;
-    }
+  const double confidence = share_of_arrhythmic_below(at(best), window_s);
+  const double top = parabola_top(at(best - 1), at(best), at(best + 1));
+  const double line_hz = step_hz * (static_cast<double>(best) + top);
+  const Levels turns = turns_of(components, line_hz);
+  const double hz =
+      turns.back() < kFewBursts ? line_hz : turns.back() * kBreathFrames_hz / (frames - 1.0);
+  const double differ =
+      hz >= 2.0 * kNearlySlowest * kSlowestBreath_hz ? alternation(bands, turns) : 0.0;
+  if (differ > (turns.back() < kManyBursts ? kAlternates : kManyAlternate)) {
+    if (0.5 * hz < kNearlySlowest * slowest_breath_hz(window_s)) return {.slower = true};
+    return {.rate_hz = 0.5 * hz, .confidence = confidence};
   }
-  if (line > 0.75 * static_cast<double>(best) && turn_to_loudness(bands, components[0])) {
-    const double window_s = frames / kBreathFrames_hz;
-    const double hz = step_hz * line, colour = colour_at(powers, best);
-    const bool little = colour <= kLittleColour * std::max(1.0, kColourWindow_s / window_s);
-    const double differ = colour <= kSomeColour || little ? alternation(bands, hz) : 0.0;
-    const bool alternates = differ > (little ? kAlternates : kSurelyAlternates);
-    alike = !alternates && little && double_at_top(components[0], hz) < kNarrow;
-    if (alternates) line *= 0.5;
-    slower = alternates && line < static_cast<double>(slowest);
-  }
-  if (slower) return {.slower = true};
-  return {.rate_hz = step_hz * line,
-          .confidence = alike ? std::min(confidence, kAlikeConfidence) : confidence,
-          .alike = alike,
-          .doubtful = doubtful && line > 0.75 * static_cast<double>(best)};
+  const bool may_alternate =
+      differ > (turns.back() < kFewBursts ? kFewMayAlternate : kMayAlternate);
+  Rhythm out{.rate_hz = hz, .confidence = confidence};
+  out.unsure = may_alternate || bursts_are_alike(bands, turns);
+  out.weak = halves_differ(bands, turns) < kHalvesDiffer;
+  if (out.unsure) out.confidence = std::min(confidence, kUnsureConfidence);
+  const std::size_t slowest_half = line_of(std::max(kSlowestBreath_hz, 1.0 / window_s));
+  out.doubtful =
+      turns.back() < kLeastTurns ||
+      (turns.back() < kLeastBursts && has_half_line(together, best, slowest, slowest_half));
+  return out;
 }
 
 }  // namespace neritic::diver

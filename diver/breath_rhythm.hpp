@@ -15,17 +15,18 @@ std::vector<double> line_powers(const Levels& x, double step_hz, std::size_t cou
 // The top of a parabola through three values, one apart: its place, from -0.5 to 0.5; 0: no top.
 double parabola_top(double before, double here, double after);
 
-inline constexpr double kAlikeConfidence = 0.5;
+inline constexpr double kUnsureConfidence = 0.8;
 struct Rhythm {
   double rate_hz = 0.0;     // 0: no line in slowest_breath_hz to kFastestBreath_hz
   double confidence = 0.0;  // the share of sounds without rhythm whose best line is weaker
-  // Every burst is like the one before, or hardly differs: a breath, or half of one. rate_hz is
-  // that of bursts, the confidence kAlikeConfidence at most.
-  bool alike = false;
-  // A line at half of the rate says that a breath is longer than the window can measure; rate_hz
-  // and confidence are 0.
+  // The rate may be twice the breath's, or half of it: bursts sound alike or may alternate. The
+  // confidence is kUnsureConfidence at most.
+  bool unsure = false;
+  // The two halves of a breath hardly differ: the rate may be half of the breath's.
+  bool weak = false;
+  // Bursts alternate: a breath is longer than the window can measure; rate_hz and confidence are 0.
   bool slower = false;
-  // A line at half of the rate stands out, too weak to be believed beside the levels' slow drift: a
+  // Too few bursts to say whether they alternate, and a line at half of the rate stands out: a
   // longer window tells.
   bool doubtful = false;
 };
@@ -33,8 +34,9 @@ struct Rhythm {
 // The rhythm of levels of equal length, each with mean 0 and deviation about 1. Principal
 // components of all bands, each scaled to the same power: the first is the loudness, the next the
 // colour, which tells breathing in from breathing out. The rhythm is the line of their summed
-// spectra with the most power, half of the power at its double included. Where one sound repeats in
-// loudness alone, every second one that differs makes it a breath of half the rate.
+// spectra with the most power, half of the power at its double included; its rate, the turns that
+// the sound makes near that line (breath_halves.hpp), since breaths are not equally long. Bursts of
+// which every second one differs make it a breath of half the rate.
 Rhythm common_rhythm(const std::vector<Levels>& bands);
 
 }  // namespace neritic::diver

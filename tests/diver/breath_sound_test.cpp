@@ -182,6 +182,103 @@ TEST(BreathSound, HalvesThatAreEqualAreNoRateAndNoConfidence) {
   }
 }
 
+// Open circuit: in, a hiss above 400 Hz for that share of a breath; out, bubbles below 200 Hz, as
+// loud; each breath as long and as loud as that deviation lets it be; water noise.
+struct MadeBreath {
+  const char* name;
+  double in, out, pause, in_size, out_size;
+};
+const std::vector<double>& white_noise(int which) {
+  static const auto all = [] {
+    std::array<std::vector<double>, 2> out;
+    for (std::uint64_t k = 0; k < 2; ++k)
+      for (std::size_t i = 0; i < 240000; ++i) out[k].push_back(test::gauss({16 + k}, i));
+    return out;
+  }();
+  return all[static_cast<std::size_t>(which)];
+}
+Recording made_breath(const MadeBreath& kind, double rate_bpm, double deviation, double noise,
+                      double seconds) {
+  constexpr double kRate_hz = 2000.0;
+  auto hiss = SecondOrderFilter::high_pass(400.0, kRate_hz), sharper = hiss;
+  auto bubbles = SecondOrderFilter::low_pass(200.0, kRate_hz), duller = bubbles;
+  Recording sound{"", kRate_hz};
+  std::uint64_t draw = 0;
+  const auto varied = [&] { return std::clamp(deviation * test::gauss({15}, draw++), -0.6, 0.6); };
+  double began_s = 0.0, lasts_s = 0.0, in_size = 0.0, out_size = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(seconds * kRate_hz); ++i) {
+    const double t = static_cast<double>(i) / kRate_hz;
+    if (t >= began_s + lasts_s) {
+      began_s += lasts_s;
+      lasts_s = 60.0 / rate_bpm * (1.0 + varied());
+      in_size = kind.in_size * std::exp(varied());
+      out_size = kind.out_size * std::exp(varied());
+    }
+    const double share = (t - began_s) / lasts_s, after = share - kind.in - kind.pause;
+    const double in = share < kind.in ? std::sin(kPi * share / kind.in) : 0.0;
+    const double out = after > 0.0 && after < kind.out ? std::sin(kPi * after / kind.out) : 0.0;
+    const double white = white_noise(0)[i];
+    const double high = 1.3 * sharper.step(hiss.step(white));
+    const double low = 2.3 * duller.step(bubbles.step(white));
+    sound.samples.push_back(
+        0.1 * (in * in_size * high + out * out_size * low + noise * white_noise(1)[i]));
+  }
+  return sound;
+}
+
+struct RatesHeard {
+  int right = 0, halved = 0, doubled = 0, refused = 0;
+};
+void hear(const Recording& sound, double rate_bpm, double window_s, RatesHeard& out) {
+  for (const BreathState& state : analyse_breath(sound, {.window_s = window_s})) {
+    const double share = state.estimate.rate_bpm / rate_bpm;
+    if (!state.estimate.breathing)
+      ++out.refused;
+    else if (share < 0.65)
+      ++out.halved;
+    else if (share > 1.55)
+      ++out.doubled;
+    else
+      out.right += std::abs(share - 1.0) < 0.2;
+  }
+}
+
+constexpr MadeBreath kEven{"1:1", 0.4, 0.4, 0.1, 1.0, 1.0},
+    kPaused{"1:2", 0.25, 0.5, 0.03, 1.0, 1.5}, kLongOut{"1:3", 0.18, 0.54, 0.06, 1.5, 1.0},
+    kInAlone{"in", 0.35, 0.0, 0.0, 1.0, 0.0};
+
+TEST(BreathSound, NoRateIsHalvedOrDoubled) {
+  RatesHeard all;
+  int blocks = 0;
+  for (const MadeBreath& kind : {kEven, kPaused, kLongOut, kInAlone})
+    for (const double rate_bpm : {3.0, 6.0, 12.0, 25.0})
+      for (const double deviation : {0.05, 0.15})
+        for (const double noise : {0.1, 0.5}) {
+          const Recording sound = made_breath(kind, rate_bpm, deviation, noise, 60.0);
+          for (const double window_s : {20.0, 45.0}) {
+            RatesHeard heard;
+            hear(sound, rate_bpm, window_s, heard);
+            EXPECT_EQ(heard.halved + heard.doubled, 0)
+                << kind.name << ", " << rate_bpm << " a minute, deviation " << deviation
+                << ", noise " << noise << ", window " << window_s << ": " << heard.halved
+                << " halved, " << heard.doubled << " doubled";
+            all.right += heard.right;
+            blocks += 6;
+          }
+        }
+  EXPECT_GT(all.right, 0.5 * blocks) << all.right << " of " << blocks;
+}
+
+TEST(BreathSound, TwelveAMinuteAreHeardInShortAndLongWindows) {
+  for (const MadeBreath& kind : {kEven, kPaused, kLongOut, kInAlone})
+    for (const double window_s : {20.0, 45.0, 60.0, 120.0}) {
+      RatesHeard heard;
+      hear(made_breath(kind, 12.0, 0.05, 0.1, 120.0), 12.0, window_s, heard);
+      EXPECT_EQ(heard.halved + heard.doubled, 0) << kind.name << ", " << window_s;
+      EXPECT_GE(heard.right, 9) << kind.name << ", " << window_s;
+    }
+}
+
 TEST(BreathSound, APauseIsNoRate) {
   std::vector<float> sound = bursts(1.0, 0.5, 40.0);
   const std::vector<float> pause = bursts(0.02, 0.02, 12.0);
