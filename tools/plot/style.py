@@ -101,12 +101,14 @@ def legend(ax, size=8, handles=None, handle=1.4):
             return
         made.remove()
         size -= 0.5
-    room = ax.get_window_extent().width - 8
-    for columns in range(len(handles), 0, -1):
+    panel = ax.get_window_extent()
+    for columns in range(1, len(handles) + 1):  # as narrow as half of the panel's height allows
         made = ax.legend(loc="best", ncol=columns, frameon=True, framealpha=0.8, edgecolor="none", fontsize=min(7.5, wanted),
                          borderaxespad=0.4, **looks)
         made.set_zorder(30)
-        if made.get_window_extent().width <= room or columns == 1:
+        box = made.get_window_extent()
+        more = box.width * (columns + 1) / columns < panel.width - 8 and columns < len(handles)
+        if box.height <= 0.5 * panel.height or not more:
             return
         made.remove()
 
