@@ -267,18 +267,20 @@ void Console::draw(graph::FrameGraph& graph, const ConsoleFrame& frame) {
     PanelFacts facts = this->facts(graph, frame);
     add_on_demand(graph, frame, facts);
     const bool graphs = show_graphs_ && options_.physics;
-    draw_panels(facts,
-                {.first_sonar = first_sonar_,
-                 .frames = &frame.times,
-                 .device = show_times_ ? session_.device().info().name : "",
-                 .hint = noted                   ? note_
-                         : options_.task.empty() ? "F1  keys   V  view"
-                                                 : options_.task,
-                 .trails = show_map_ ? &trails_ : nullptr,
-                 .numbers = graphs ? &numbers_ : nullptr,
-                 .taken = frame.taken,
-                 .graphs = graphs ? &graphs_ : nullptr},
-                now, scale);
+    draw_panels(
+        facts,
+        {.first_sonar = first_sonar_,
+         .frames = &frame.times,
+         .device = show_times_ ? session_.device().info().name : "",
+         .hint = noted ? note_
+                 : options_.task.empty()
+                     ? (options_.steers ? "F1  keys   V  view   P  steer" : "F1  keys   V  view")
+                     : options_.task,
+         .trails = show_map_ ? &trails_ : nullptr,
+         .numbers = graphs ? &numbers_ : nullptr,
+         .taken = frame.taken,
+         .graphs = graphs ? &graphs_ : nullptr},
+        now, scale);
   } else {
     if (noted)
       draw_hint(note_, scale);

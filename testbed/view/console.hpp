@@ -36,6 +36,7 @@ struct ConsoleOptions {
   LivePhysics* physics = nullptr;    // whose numbers are drawn; nullptr: nothing moves by physics
   ViewMemory memory;                 // as the last window looked
   const Devices* devices = nullptr;  // of the run
+  bool steers = false;               // a key flies a vehicle or swims a diver
   hud::Units units = hud::Units::kMetric;
   std::string task;  // for the person; the panels are off until they are asked for
 };

@@ -54,6 +54,9 @@ Result<std::unique_ptr<DiveView>> DiveView::create(Session& session, xr::Display
                                  .physics = physics,
                                  .memory = options.memory,
                                  .devices = options.devices,
+                                 .steers = options.may_fly && physics &&
+                                           (!physics->world().vehicles().empty() ||
+                                            !physics->world().humans().empty()),
                                  .units = options.units,
                                  .task = options.task}));
   }

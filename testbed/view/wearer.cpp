@@ -72,7 +72,7 @@ void Wearer::claim(SampleInbox& inbox, DiverGroup group) {
 
 // Gives back what was swum by keys, to the scene's choice.
 void Wearer::let_go(SampleInbox& inbox) {
-  swims_ = false;
+  swims_ = views_ = false;
   for (const DiverGroup group : {DiverGroup::kBody, DiverGroup::kButtons, DiverGroup::kGaze})
     let_go(inbox, group);
 }
@@ -94,13 +94,20 @@ void Wearer::swim_by_keys(bool on) {
   yaw_rad_ = course_of(diver::standing_pose(Vec3(0.0), state().human.root.attitude).rotation);
 }
 
-void Wearer::begin_swimming(SampleInbox& inbox, double scene_time_s) {
+// With the first key that moves him; at once a diver who would follow a plan. Before, he hovers by
+// himself, each step, as seldom frames cannot make him.
+bool Wearer::begins_by_keys() const {
+  const bool turns = !world_from_eyes_ && std::abs(input_.move.x + input_.turn) > kPush;
+  const bool moves = -input_.move.z > kPush || std::abs(input_.move.y) > kPush;
+  return by_keys_ && (moves || turns || !human().waypoints_ned_m.empty());
+}
+
+void Wearer::begin_swimming(double scene_time_s) {
   swims_ = true;
   began_by_keys_ = by_keys_;
   swimmer_ = state().swimmer;
   stays_ned_m_ = state().human.root.position_ned_m;
   swum_s_ = scene_time_s;
-  claim(inbox, DiverGroup::kBody);
 }
 
 // In the frame of the body with which it rides.
@@ -111,7 +118,7 @@ Pose Wearer::riding(const Pose& world_from_tracked) const {
 Status Wearer::poll(SampleInbox& inbox, double scene_time_s) {
   if (swims_) swim(inbox, scene_time_s);
   if (!std::exchange(fresh_, false)) return {};
-  const bool ends = swims_ && began_by_keys_ && !by_keys_;
+  const bool ends = !by_keys_ && ((swims_ && began_by_keys_) || views_);
   if (!world_from_head_ && input_.jacket == 0 && !by_keys_ && !ends) return {};
   if (!source_) {
     NERITIC_TRY(source_, inbox.open("wearer"));
@@ -141,8 +148,8 @@ Status Wearer::poll(SampleInbox& inbox, double scene_time_s) {
     let_go(inbox, DiverGroup::kGaze);
   if (ends)
     let_go(inbox);
-  else if (!swims_ && (by_keys_ || (world_from_head_ && glm::length(input_.move) > kPush)))
-    begin_swimming(inbox, scene_time_s);
+  else if (!swims_ && (begins_by_keys() || (world_from_head_ && glm::length(input_.move) > kPush)))
+    begin_swimming(scene_time_s);
   if (input_.jacket != 0 && !swims_) {
     claim(inbox, DiverGroup::kButtons);
     send(inbox, PayloadKind::kButtons, JacketButtons{input_.jacket}, now);
@@ -172,6 +179,7 @@ void Wearer::send_view(SampleInbox& inbox, TimeNs now) {
   viewed_.time_s = time_s;
   viewed_.direction = viewed_.fixation = ahead;
   viewed_.now = rests ? diver::GazeClass::kFixation : diver::GazeClass::kSaccade;
+  views_ = true;
   claim(inbox, DiverGroup::kGaze);
   send(inbox, PayloadKind::kGaze, Gaze{viewed_}, now);
 }

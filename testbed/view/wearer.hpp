@@ -45,7 +45,8 @@ class Wearer final : public SampleSource {
   void claim(SampleInbox& inbox, DiverGroup group);
   void let_go(SampleInbox& inbox);
   void let_go(SampleInbox& inbox, DiverGroup group);
-  void begin_swimming(SampleInbox& inbox, double scene_time_s);
+  bool begins_by_keys() const;
+  void begin_swimming(double scene_time_s);
   std::optional<diver::SwimGoal> pushed() const;
   diver::SwimGoal pushed_by_keys();
   Pose riding(const Pose& world_from_tracked) const;
@@ -70,6 +71,7 @@ class Wearer final : public SampleSource {
   TimeNs gazed_ns_ = 0;
   std::optional<Quat> world_from_eyes_;  // of a window's view out of them
   diver::GazeState viewed_;              // where that pointed last
+  bool views_ = false;                   // it was sent as gaze
   // Swimming by hand, from the first push on.
   bool swims_ = false, by_keys_ = false, began_by_keys_ = false;
   double yaw_rad_ = 0.0;  // by keys: the course that is held

@@ -19,8 +19,9 @@ class DiverKeys : public testing::Test {
     physics_->start();
     wearer_.emplace(*physics_);
   }
-  void hold(const DiveInput& input, double seconds, const std::optional<Quat>& eyes = {}) {
-    for (const double end_s = time_s_ + seconds; time_s_ < end_s; time_s_ += 0.05) {
+  void hold(const DiveInput& input, double seconds, const std::optional<Quat>& eyes = {},
+            double frame_s = 0.05) {
+    for (const double end_s = time_s_ + seconds; time_s_ < end_s; time_s_ += frame_s) {
       wearer_->take({}, input, eyes);
       ASSERT_TRUE(wearer_->poll(physics_->inbox(), time_s_).ok());
       physics_->follow(0, time_s_);
@@ -112,6 +113,14 @@ TEST_F(DiverKeys, InTheOwnViewTurningMovesNobodyAndAheadIsWhereTheViewPoints) {
   const Vec3 swum = place() - start;
   EXPECT_GT(glm::dot(swum, from_yaw_pitch_roll(radians(-70.0), 0.0, 0.0) * Vec3(0, 0, -1)), 4.0);
   EXPECT_LT(std::abs(swum.y), 1.5);
+}
+
+TEST_F(DiverKeys, WithoutAKeyHeHoversByHimselfHoweverSeldomFramesCome) {
+  wearer_->swim_by_keys(true);
+  const Vec3 start = place();
+  hold({}, 200.0, Quat(1, 0, 0, 0), 0.27);
+  EXPECT_NEAR(place().y, start.y, 0.5);
+  EXPECT_EQ(phase(DiverGroup::kBody), GroupPhase::kChosen);
 }
 
 // Ten seconds of the scene in one of the host, in which a few frames come.
