@@ -29,8 +29,10 @@ Result<HeadGather> HeadGather::create(gpu::Device& device, HeadDesc desc) {
 
 Result<HeadBuffers> HeadGather::make_buffers(gpu::Device& device, const std::string& name) const {
   HeadBuffers buffers;
-  constexpr VkBufferUsageFlags kPlain =
-      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  // A window keeps a copy of the power.
+  constexpr VkBufferUsageFlags kPlain = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                        VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                                        VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
   const auto readable = [&](const std::string& of, std::uint64_t bytes, VkBufferUsageFlags usage) {
     return gpu::Buffer::create(device, {name + of, bytes, usage, gpu::MemoryUse::kReadback});
   };
