@@ -84,7 +84,8 @@ bool ClockMap::Bucket::add(const Point& point) {
 
 void ClockMap::keep(TimeNs sent_ns, TimeNs arrived_ns) {
   const Point point{sent_ns, arrived_ns - sent_ns};
-  const bool sparse = !buckets_.empty() && sent_ns - newest_sent_ns_ > kSparse_ns;
+  const bool gap = !buckets_.empty() && sent_ns - newest_sent_ns_ > kSparse_ns;
+  const bool sparse = std::exchange(after_gap_, gap) && gap;
   const TimeNs bucket_ns = sparse ? kSparseBucket_ns : kBucket_ns;
   newest_sent_ns_ = buckets_.empty() ? sent_ns : std::max(newest_sent_ns_, sent_ns);
   const auto second = [&](TimeNs t) { return t / bucket_ns; };
@@ -93,6 +94,7 @@ void ClockMap::keep(TimeNs sent_ns, TimeNs arrived_ns) {
   });
   if (at == buckets_.end() || second(at->quick.front().sent_ns) != second(sent_ns))
     at = buckets_.insert(at, Bucket{.sparse = sparse});
+  at->sparse = at->sparse && sparse;
   if (at->add(point)) {
     auto place = static_cast<std::size_t>(at - buckets_.begin());
     for (; buckets_.size() > kBuckets; place -= std::min<std::size_t>(place, 1))
@@ -103,8 +105,8 @@ void ClockMap::keep(TimeNs sent_ns, TimeNs arrived_ns) {
   note_way(arrived_ns - to_host(sent_ns), arrived_ns);
 }
 
-// Whether enough of the quickest packets near this one took as long as it did. Of a device that
-// sends less often too few come for others to be as quick: each counts.
+// Whether enough of the quickest packets near this one took as long as it did. A device that sends
+// seldom has too few packets for others to be as quick: each counts.
 bool ClockMap::agreed(std::size_t bucket, std::size_t place) const {
   if (buckets_[bucket].sparse) return true;
   const Point& point = buckets_[bucket].quick[place];

@@ -4,10 +4,10 @@
 // one nearest on average (linear programming over the lower convex hull: Moon, Skelly, Towsley
 // 1999, Estimation and removal of clock skew from network delay measurements, INFOCOM), its slope
 // averaged over pairs of quick packets that lie far apart. Jitter does not move it; nor does a
-// packet whose time was corrupted, since a point counts if others near it agree (but of devices
-// that send less than four packets a second). One way alone
-// cannot tell a constant delay from an offset: the shortest way counts as none. Exchanges both ways
-// do tell (LSL, NTP), and then bound the offset from both sides. Plain value; one thread.
+// packet whose time was corrupted, since a point counts if others near it agree; of a device that
+// sends less than four packets a second each point counts. One way alone cannot tell a constant
+// delay from an offset: the shortest way counts as none. Exchanges both ways do tell (LSL, NTP),
+// and then bound the offset from both sides. Plain value; one thread.
 #pragma once
 
 #include <array>
@@ -61,7 +61,7 @@ class ClockMap {
   struct Bucket {
     std::array<Point, 16> quick;
     std::size_t count = 0;
-    bool sparse = false;          // its first packet came long after the one before
+    bool sparse = false;          // each of its packets is of a device that sends seldom
     std::optional<Point> agreed;  // the quickest that others near it agree with
     bool add(const Point& point);
   };
@@ -83,6 +83,7 @@ class ClockMap {
   struct Packet {
     TimeNs sent_ns = 0, arrived_ns = 0;
   };
+  bool after_gap_ = false;  // the newest packet came long after the one before: two make it seldom
   std::vector<Packet> early_;  // the newest packets, if all came before they could
   TimeNs late_since_ns_ = 0;
   bool late_ = false;

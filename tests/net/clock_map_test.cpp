@@ -99,6 +99,27 @@ TEST(ClockMap, PacketsWithAWrongTimeDoNotMoveIt) {
     }
 }
 
+// A gap, as of a wireless link that was lost for a moment, does not make the device a slow one.
+TEST(ClockMap, AWrongTimeAfterAGapDoesNotMoveIt) {
+  constexpr TimeNs kOutageEvery_ns = 5'000'000'000, kOutageFrom_ns = 4'600'000'000;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    ClockMap map;
+    double worst_s = 0.0;
+    for (int i = 0; i < 60 * 240; ++i) {
+      const RandomKey key{seed, 8, static_cast<std::uint64_t>(i)};
+      const auto at = static_cast<TimeNs>(kSecond * i / 240.0);
+      if (at % kOutageEvery_ns > kOutageFrom_ns) continue;
+      TimeNs sent = at;
+      if (random_uniform(key, 0) < 0.02)
+        sent ^= TimeNs{1} << static_cast<int>(random_uniform(key, 1) * 50.0);
+      map.add(sent, at + static_cast<TimeNs>(5e6 * random_uniform(key, 2)));
+      if (i < 30 * 240) continue;
+      worst_s = std::max(worst_s, std::abs(1e-9 * static_cast<double>(map.to_host(at) - at)));
+    }
+    EXPECT_LT(worst_s, 1e-3) << seed;
+  }
+}
+
 TEST(ClockMap, AnExchangeTellsADelayFromAnOffset) {
   // The device's clock is 9.995 s ahead; each way takes 5 ms, its answer 2 ms.
   ClockMap map;
