@@ -34,8 +34,6 @@ constexpr double kHalfLine = 6.0;
 // Every burst sounds alike if at most this share of their power goes against the loudness: nine in
 // ten made bursts that are alike have up to 0.04, a regulator's hiss and bubbles 0.06 and more.
 constexpr double kOtherSounds = 0.07;
-// A hump that is wider than half of its period has its double's trough at its top.
-constexpr double kNarrow = 0.0;
 // Fewer turns are no rhythm that is sure.
 constexpr double kLeastTurns = 1.9;
 // Half of a rate may be measured somewhat below the slowest breath.
@@ -154,10 +152,11 @@ double double_at_top(const Levels& loudness, const Levels& turns) {
   return turned.real() / std::max(std::pow(std::abs(first), 3.0), 1e-300);
 }
 
-// One sound that comes once a turn, so wide that it may as well be half of a breath.
+// One sound that comes once a turn, so wide that it may as well be half of a breath: a hump that is
+// wider than half of its period has its double's trough at its top.
 bool bursts_are_alike(const std::vector<Levels>& bands, const Levels& turns) {
   const Bursts bursts = bursts_of(bands, turns);
-  return bursts.others < kOtherSounds && double_at_top(bursts.loudness, turns) < kNarrow;
+  return bursts.others < kOtherSounds && double_at_top(bursts.loudness, turns) < 0.0;
 }
 
 // How far the halves of turns differ; infinity: too few turns to say.

@@ -13,7 +13,7 @@ constexpr double kHighestSample_m = -10.0, kDeepestSample_m = 2000.0;
 constexpr double kSubmerged_m = 0.5;
 // A longer time at the surface ends a dive.
 constexpr double kNewDive_min = 10.0;
-// Who holds a stop's depth by hand is at it within this.
+// A diver is at a stop within this distance of its depth.
 constexpr double kArrived_m = 0.5;
 
 // The stop at this depth or the next below it.
@@ -187,8 +187,8 @@ std::size_t DiveComputer::gas_for_stop(std::size_t breathed, double depth_m,
   return best;
 }
 
-// The stop that the ceiling asks for; 0: none. A little above their stop divers are not sent down
-// to the next; those who have yet to rise to it are held below, as by the stop they are at.
+// The depth of the stop that the ceiling asks for; 0: none. A ceiling that lies little below a stop
+// sends nobody down who is at that stop. A diver who is still deeper waits at the stop below.
 double DiveComputer::owed_stop_m(const DiveComputerState& state,
                                  const DiveComputerView& view) const {
   const DecoConventions& c = settings_.conventions;
@@ -206,7 +206,8 @@ AscentState DiveComputer::ascent_start(const DiveComputerState& state, const Div
   AscentState up{state.tissues, state.dive_min, state.last.depth_m, state.last.gas, state.anchor_m};
   const double stop = owed_stop_m(state, view);
   if (stop <= up.depth_m) {
-    // Between stops a plan has yet to arrive at the next, and owes it a whole quantum.
+    // The plan owes a whole quantum to each stop at which it arrives. A diver just below a stop has
+    // arrived there.
     const double above = std::floor(up.depth_m / c.stop_step_m) * c.stop_step_m;
     if (state.anchor_m > 0.0 && above >= c.last_stop_m && up.depth_m - above <= kArrived_m) {
       up.run_min += (up.depth_m - above) / c.ascent_m_min;

@@ -60,7 +60,7 @@ vec2 sun_hidden(vec3 position, vec3 normal, float depth_m, float turn) {
   if (cascade == kCascades) return vec2(0.0);
   int size = textureSize(cascade_image, 0).x;
   float texel_m = 2.0 * half_m / float(size);
-  // A face that is turned away lies in the same plane.
+  // The sign stays: the plane of a face that is turned away is the same.
   float toward = dot(normal, params.to_sun);
   float facing = toward < 0.0 ? min(toward, -0.03) : max(toward, 0.03);
   // Metres towards the sun that the surface rises a metre across and along.

@@ -82,7 +82,7 @@ Vec2 within_circle(const MixedKey& key, std::uint64_t index) {
   return std::sqrt(random_uniform(key, index + 1)) * Vec2(std::cos(turn), std::sin(turn));
 }
 
-// What a bubble of this radius at the source is like where it has risen to.
+// The bubble that had this radius at the source, after its rise.
 WorldParticle risen(const scene::BubbleSource& source, const Course& course, double radius_m,
                     double age_s, const Rise& rise, const Vec3& aside_m, const MixedKey& key,
                     std::uint64_t index) {
@@ -192,7 +192,7 @@ void add_bubbles(const scene::MotionSource& motion, const scene::BubbleSource& s
     }
     for (std::uint64_t i = 0; i < n; ++i) {
       const std::uint64_t index = 64 * (i + 1);
-      // Of a breath most leaves early, in gulps; a leak trickles.
+      // Most of a breath leaves early, in gulps; a leak trickles.
       double when = random_uniform(key, index);
       if (!leaks) when *= 0.5 + 0.5 * when;
       const double gulp = std::floor(when * gulps), within = when * gulps - gulp;
