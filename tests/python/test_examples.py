@@ -1,0 +1,154 @@
+"""The examples of the Python package and the Python of the READMEs: they run and do what they say."""
+
+import contextlib
+import importlib.util
+import io
+import os
+import re
+import socket
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import neritic
+
+ROOT = Path(__file__).resolve().parents[2]
+MISSION = str(ROOT / "assets/scenes/mission.toml")
+TALK = str(ROOT / "assets/scenes/talk.toml")
+
+
+def example(name):
+    spec = importlib.util.spec_from_file_location(name, ROOT / f"tools/python/examples/{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def quietly(call, *arguments):
+    with contextlib.redirect_stdout(io.StringIO()):
+        return call(*arguments)
+
+
+class Examples(unittest.TestCase):
+    def setUp(self):
+        os.chdir(ROOT)
+
+    def test_a_square_is_flown_to_each_corner(self):
+        self.assertLess(quietly(example("square").main), 0.15)
+
+    def test_a_vehicle_keeps_beside_a_diver_who_is_seen_late(self):
+        self.assertAlmostEqual(quietly(example("follow_diver").main), 2.0, delta=0.5)
+
+    def test_a_controller_of_ones_own_holds_the_depth(self):
+        self.assertLess(abs(quietly(example("own_controller").main)), 0.2)
+
+    def test_a_diver_and_a_vehicle_talk_by_sound(self):
+        said = quietly(example("talk").main, "assets/scenes/talk.toml", 20.0)
+        self.assertGreaterEqual(said["told"], 4)
+        self.assertLess(said["worst_m"], 1.5)
+        self.assertGreaterEqual(said["answered"], 2)
+
+    def test_devices_of_the_scene_are_heard_in_real_time(self):
+        assets, port = ROOT / "assets", 46000 + os.getpid() % 900
+        with tempfile.TemporaryDirectory() as folder, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+            scene = Path(folder) / "lab.toml"
+            scene.write_text(f'[physics]\n[[objects]]\nname = "diver"\nmodel = "{assets}/models/diver.glb"\n'
+                             f'human = "{assets}/divers/recreational.toml"\nposition_m = [0, -12, 0]\n'
+                             f'[sources]\njacket = "jacket udp {port}"\n')
+            with neritic.open(scene, real_time=True) as world:
+                for _ in range(100):
+                    sender.sendto(b"[false,true,false]", ("127.0.0.1", port))
+                    if list(world.tick(6)["diver/motion"].buttons) == [0, 1, 0]:
+                        break
+                else:
+                    self.fail("nothing was heard")
+
+    def test_messages_by_sound_end_as_was_accepted(self):
+        """Each message as heard, when, or as lost, and why: tests/golden/talk.messages.csv (NERITIC_UPDATE_GOLDEN=1 writes it)."""
+        said = {1.4: ("diver", b"look", "rov"), 5.0: ("rov", bytes(64), None), 5.1: ("diver", b"busy", "rov"),
+                10.5: ("diver", b"a", None), 10.52: ("rov", b"b", None), 13.0: ("buoy", bytes(range(40)), "diver")}
+        rows = ["modem,event,kind,from,to,number,bytes,sent_s,heard_s,snr_db"]
+        with neritic.open(TALK, seed=1) as world:
+            for name in ("diver", "rov", "buoy"):
+                def note(seen, name=name):
+                    rows.append(f"{name},{neritic.MODEM_EVENTS[int(seen.event)]},{('message', 'request', 'answer')[int(seen.message_kind)]},"
+                                f"{seen.sender:.0f},{seen.to:.0f},{seen.number:.0f},{seen.bytes:.0f},{seen.sent:.5f},{seen.heard:.5f},"
+                                f"{seen.snr_db:.2f}")
+                world.on(f"{name}/modem", note)
+            while world.time < 20.0:
+                for at in [at for at in said if at <= world.time + 1e-9]:
+                    name, data, to = said.pop(at)
+                    world[name].send(data, to=to)
+                world.tick(12)
+        golden, text = ROOT / "tests/golden/talk.messages.csv", "\n".join(rows) + "\n"
+        if os.environ.get("NERITIC_UPDATE_GOLDEN"):
+            golden.write_text(text)
+        self.assertEqual(text, golden.read_text())
+
+    def test_a_sonar_dataset_is_written(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(quietly(example("sonar_dataset").main, MISSION, folder, 2), 2)
+            files = sorted(Path(folder).glob("*.npz"))
+            self.assertEqual(len(files), 2)
+            data = np.load(files[0])
+            self.assertEqual(data["echoes"].dtype, np.float32)
+            self.assertGreater(data["echoes"].max(), 0.0)
+            self.assertAlmostEqual(np.linalg.norm(data["orientation"]), 1.0, places=6)
+
+
+class Readme(unittest.TestCase):
+    """The Python of the READMEs, as it stands."""
+
+    def blocks(self, file, first):
+        text = (ROOT / file).read_text()
+        found = re.findall(r"^((?: {4}.*\n|\n)+)", text, re.MULTILINE)
+        return ["".join(line[4:] or "\n" for line in block.splitlines(keepends=True)) for block in found if first in block]
+
+    def test_its_worlds_run(self):
+        os.chdir(ROOT)
+        names = {}
+        world_block, talk_block = self.blocks("tools/python/README.md", "neritic.open(") + self.blocks("tools/python/README.md", ".send(")
+        try:
+            exec(world_block, names)
+        except neritic.Error as error:
+            if "Vulkan" not in str(error):
+                raise
+            self.skipTest(str(error))
+        world, place = names["world"], names["truth"].position
+        self.assertGreater(names["picture"].size, 1000)
+        world.tick(240 * 60)
+        there = world.truth("rov")
+        self.assertEqual(there.touched_steps, 0)
+        goal = [float(x) for x in re.search(r"goto\((.*?)\)", world_block)[1].split(",")]
+        np.testing.assert_allclose(there.position, goal, atol=0.3)
+        self.assertEqual(place.shape, (3,))
+        world.close()
+        with neritic.open(TALK, seed=1) as names["world"]:
+            world = names["world"]
+            names["rov"] = world["rov"]
+            names["obs"] = world.tick(240 * 12)
+            exec(talk_block, names)
+
+    def test_its_environments_run(self):
+        names = {"neritic": neritic}
+        block, = self.blocks("tools/python/README.md", "neritic.vector(")
+        names["actions"] = np.zeros((4096, 8), np.float32)
+        exec(block, names)
+        self.assertEqual(names["reward"].shape, (4096,))
+
+    def test_the_top_readmes_python_runs(self):
+        os.chdir(ROOT)
+        code, = re.findall(r"python3 -c '(.*?)'", (ROOT / "README.md").read_text(), re.DOTALL)
+        names = {}
+        quietly(exec, code, names)
+        world = names["world"]
+        world.tick(240 * 60)
+        self.assertEqual(world.truth("rov").touched_steps, 0)
+        goal = [float(x) for x in re.search(r"goto\((.*?)\)", code)[1].split(",")]
+        np.testing.assert_allclose(world.truth("rov").position, goal, atol=0.3)
+
+
+if __name__ == "__main__":
+    unittest.main()
