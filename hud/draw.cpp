@@ -38,6 +38,15 @@ void draw_limit(Painter& p, const Box& box, const Shown& shown, double size, dou
   p.cell({{box.x + part, box.y, part, box.h}, "min", shown.stop_min.view(), "", size, label_size});
 }
 
+void draw_ceiling_or_deepest(Painter& p, const Box& box, const Shown& s, double size,
+                             double label_size) {
+  const char* const unit = unit_names(s.units).depth;
+  if (s.in_stops)
+    p.cell({box, "CEILING", s.ceiling.view(), unit, size, label_size, depth_tone(s)});
+  else
+    p.cell({box, "DEEPEST", s.deepest.view(), unit, size, label_size});
+}
+
 void draw_wrist(Painter& p, const Shown& s) {
   const UnitNames unit = unit_names(s.units);
   constexpr Color kCase{0.16f, 0.17f, 0.18f}, kScreen{0.005f, 0.012f, 0.018f};
@@ -54,16 +63,7 @@ void draw_wrist(Painter& p, const Shown& s) {
   draw_limit(p, {310.0, 20.0, 152.0, 122.0}, s, s.in_stops ? 40.0 : 54.0, s.in_stops ? 12.0 : 14.0);
   p.line(20.0, 149.0, 460.0, 149.0, 1.5, kFaint);
   p.cell({{18.0, 154.0, 150.0, 74.0}, "TIME", s.dive_time.view(), "", 30.0, 13.0});
-  if (s.in_stops)
-    p.cell({{170.0, 154.0, 136.0, 74.0},
-            "CEILING",
-            s.ceiling.view(),
-            unit.depth,
-            30.0,
-            13.0,
-            depth_tone(s)});
-  else
-    p.cell({{170.0, 154.0, 136.0, 74.0}, "DEEPEST", s.deepest.view(), unit.depth, 30.0, 13.0});
+  draw_ceiling_or_deepest(p, {170.0, 154.0, 136.0, 74.0}, s, 30.0, 13.0);
   p.cell({{310.0, 154.0, 152.0, 74.0}, "TO SURFACE", s.to_surface.view(), "min", 30.0, 13.0});
   p.line(20.0, 233.0, 460.0, 233.0, 1.5, kFaint);
   p.cell({{18.0, 238.0, 150.0, 72.0},

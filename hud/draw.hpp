@@ -17,5 +17,8 @@ void draw(LayoutKind layout, Painter& painter, const Shown& shown);
 // No-stop time, or the stop with its minutes.
 void draw_limit(Painter& painter, const Box& box, const Shown& shown, double size,
                 double label_size);
+// The ceiling where stops are owed, the deepest depth of the dive where none is.
+void draw_ceiling_or_deepest(Painter& painter, const Box& box, const Shown& shown, double size,
+                             double label_size);
 
 }  // namespace neritic::hud

@@ -77,16 +77,7 @@ void draw_diver(Painter& p, const Shown& s) {
   draw_limit(p, {x + 6.0, 136.0, 176.0, 80.0}, s, s.in_stops ? 34.0 : 40.0, 12.0);
   p.cell({{x + 186.0, 136.0, 108.0, 80.0}, "TO SURFACE", s.to_surface.view(), "min", 28.0, 12.0});
   p.cell({{x + 6.0, 222.0, 142.0, 62.0}, "TIME", s.dive_time.view(), "", 24.0, 12.0});
-  if (s.in_stops)
-    p.cell({{right, 222.0, 142.0, 62.0},
-            "CEILING",
-            s.ceiling.view(),
-            unit.depth,
-            24.0,
-            12.0,
-            tone_of(s, Alarm::kCeiling)});
-  else
-    p.cell({{right, 222.0, 142.0, 62.0}, "DEEPEST", s.deepest.view(), unit.depth, 24.0, 12.0});
+  draw_ceiling_or_deepest(p, {right, 222.0, 142.0, 62.0}, s, 24.0, 12.0);
   p.cell({{x + 6.0, 288.0, 142.0, 62.0},
           "TANK",
           s.tank.view(),
