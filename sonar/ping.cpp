@@ -109,8 +109,8 @@ void add_head(shared::SonarEcho& echo, const scene::Sonar& sonar, const Head& he
   echo.columns_per_rad = static_cast<float>(1.0 / g.azimuth_step_rad());
 }
 
-void add_mirror(Ping& ping, const Mirror& mirror, const scene::Sonar& sonar, const Head& head,
-                const PingState& state, const Vec3& eye_m) {
+void add_mirror(Ping& ping, const Mirror& mirror, const scene::Sonar& sonar, const PingState& state,
+                const Vec3& eye_m) {
   shared::SonarEcho& echo = ping.echo;
   echo.ghost_source = glm::vec3(state.world_from_sonar.position_m - eye_m);
   echo.water_level_m = static_cast<float>(mirror.height_m - eye_m.y);
@@ -219,7 +219,7 @@ Ping ping_of(const scene::Sonar& sonar, const Head& head, const PingState& state
       ping.correction.push_back(static_cast<float>(factor * ping.sound_speed_m_s));
     ping.correction.insert(ping.correction.end(), table.bends.begin(), table.bends.end());
   }
-  if (mirror) add_mirror(ping, *mirror, sonar, head, state, eye_m);
+  if (mirror) add_mirror(ping, *mirror, sonar, state, eye_m);
   return ping;
 }
 

@@ -24,7 +24,7 @@ void SuitAdapter::receive(net::Bytes bytes, bool cut, TimeNs arrived_ns, Outlet&
     const auto length = net::mxtp_length(rest);
     if (!length.ok()) {
       // On to what looks like the next datagram.
-      const auto next = std::ranges::search(rest.subspan(1), kMagic).begin();
+      const auto next = std::search(rest.begin() + 1, rest.end(), kMagic.begin(), kMagic.end());
       const auto skipped = static_cast<std::size_t>(next - rest.begin());
       datagram(rest.first(skipped), true, [] {});
       at += skipped;

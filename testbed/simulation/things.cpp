@@ -79,7 +79,6 @@ Vec3 Things::on_body_m(const PhysicsGrip& grip, std::span<const PhysicsHuman> hu
 Motion Things::grip_motion(std::size_t index, std::span<const PhysicsHuman> humans,
                            const PhysicsState& state) const {
   const PhysicsGrip& grip = grips_[index];
-  Pose pose;
   sim::BodyMotion body;
   if (grip.sort == OwnerSort::kVehicle) {
     const rov::State& at = state.vehicles()[grip.owner].body;
