@@ -14,8 +14,8 @@ constexpr std::array<std::string_view, 5> kTaskNames{"hover", "track", "dock", "
 
 // A vehicle so far from its goal has failed.
 constexpr double kLost_m = 5.0;
-// What an episode's end adds. All rewards before it are 0 or more, but for the effort: an end by
-// failure is never worth it.
+// The end of an episode adds one of these to its last reward. Every reward before it is 0 or more,
+// except for the effort, so that failing early never pays.
 constexpr double kLostWorth = -10.0, kDoneWorth = 10.0;
 // The potential of the best place in a task that can be done, kBestPlace * kPotential, is less than
 // kDoneWorth: being done is worth more than any place beside it.
@@ -107,7 +107,7 @@ double turn_to_goal_rad(const TaskState& s, const rov::WaterMotion& motion) {
   return std::abs(turned_rad(rov::heading_of(motion.attitude), s.goal.heading_rad));
 }
 
-// Of where the vehicle is, 0 to kBestPlace.
+// The worth of the vehicle's place, heading and level, 0 to kBestPlace.
 double place_worth(const TaskState& s, const rov::WaterMotion& motion) {
   const double off_m = glm::length(s.goal.position_ned_m - motion.position_ned_m);
   // Up of the body against up: 1 level, -1 overturned.

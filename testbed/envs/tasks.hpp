@@ -59,8 +59,8 @@ void advance(Task task, const Dice& dice, double time_s, double step_s, const Ve
 // gain, so that staying beside the goal earns nothing. 0 in the others, whose steps are rewarded by
 // where the vehicle is.
 double potential_of(Task task, const TaskState& state, const rov::WaterMotion& motion);
-// Of the vehicle's motion then; effort: mean square of the actions, 0 to 1; before: the potential
-// before the step.
+// The worth of a step that ended in this motion. effort: mean square of the actions, 0 to 1;
+// before: the potential before the step.
 Worth worth_of(Task task, const TaskState& state, const rov::WaterMotion& motion,
                const rov::Vec6& velocity, double effort, double before);
 

@@ -184,7 +184,8 @@ PanelFacts Console::facts(graph::FrameGraph& graph, const ConsoleFrame& frame) {
   return facts;
 }
 
-// Of the participant that carries the view or is chased; of a free view its own.
+// The depth and heading of the participant that carries the view or is chased; in a free view those
+// of the view itself.
 Readout Console::readout(const ConsoleFrame& frame) const {
   const FreeCamera& eye = frame.choice.eye();
   Readout out{"camera", -eye.position_m().y, radians(eye.heading_deg()), 2};
@@ -257,6 +258,12 @@ void Console::look_at_cursor() {
     clicked_ = {io.MousePos.x / display.x, io.MousePos.y / display.y};
 }
 
+// The line under the panels when there is nothing to note: the task, or the first keys to know.
+std::string Console::standing_hint() const {
+  if (!options_.task.empty()) return options_.task;
+  return options_.steers ? "F1  keys   V  view   P  steer" : "F1  keys   V  view";
+}
+
 void Console::draw(graph::FrameGraph& graph, const ConsoleFrame& frame) {
   const TimeNs now = now_ns();
   const float scale = overlay_.scale();
@@ -267,20 +274,16 @@ void Console::draw(graph::FrameGraph& graph, const ConsoleFrame& frame) {
     PanelFacts facts = this->facts(graph, frame);
     add_on_demand(graph, frame, facts);
     const bool graphs = show_graphs_ && options_.physics;
-    draw_panels(
-        facts,
-        {.first_sonar = first_sonar_,
-         .frames = &frame.times,
-         .device = show_times_ ? session_.device().info().name : "",
-         .hint = noted ? note_
-                 : options_.task.empty()
-                     ? (options_.steers ? "F1  keys   V  view   P  steer" : "F1  keys   V  view")
-                     : options_.task,
-         .trails = show_map_ ? &trails_ : nullptr,
-         .numbers = graphs ? &numbers_ : nullptr,
-         .taken = frame.taken,
-         .graphs = graphs ? &graphs_ : nullptr},
-        now, scale);
+    draw_panels(facts,
+                {.first_sonar = first_sonar_,
+                 .frames = &frame.times,
+                 .device = show_times_ ? session_.device().info().name : "",
+                 .hint = noted ? note_ : standing_hint(),
+                 .trails = show_map_ ? &trails_ : nullptr,
+                 .numbers = graphs ? &numbers_ : nullptr,
+                 .taken = frame.taken,
+                 .graphs = graphs ? &graphs_ : nullptr},
+                now, scale);
   } else {
     if (noted)
       draw_hint(note_, scale);

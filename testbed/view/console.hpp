@@ -88,6 +88,7 @@ class Console {
   PanelFacts facts(graph::FrameGraph& graph, const ConsoleFrame& frame);
   std::string recording() const;
   Readout readout(const ConsoleFrame& frame) const;
+  std::string standing_hint() const;
   void draw(graph::FrameGraph& graph, const ConsoleFrame& frame);
   void add_on_demand(graph::FrameGraph& graph, const ConsoleFrame& frame, PanelFacts& facts);
   void draw_mark(TimeNs now_ns, float scale, std::span<const PanelRect> instruments) const;

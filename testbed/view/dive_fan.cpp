@@ -18,7 +18,8 @@ constexpr std::uint32_t groups(std::uint32_t pixels) {
   return (pixels + shared::kSonarFanGroup - 1) / shared::kSonarFanGroup;
 }
 
-// grid: of all rows, but with the limits that are shown; part: of the rows, that they are.
+// grid: its limits are those shown, its bins those of the whole ping; part: the share of the
+// range's bins that the limits show.
 shared::SonarFanPush push_of(const FanShape& shape, const sonar::BeamGrid& grid, double part,
                              bool is_power, double gain) {
   const sonar::Limits& l = grid.limits;

@@ -68,7 +68,8 @@ void RunNumbers::look(const PhysicsWorld& world, const sim::Snapshot<PhysicsStat
   else
     first_ = (first_ + 1) % kNumbersKept;
   times_s_[(first_ + count_ - 1) % kNumbersKept] = time_s;
-  // What is older than is shown is no part of what is told.
+  // Samples older than a graph shows are dropped: its least and greatest values are of what is
+  // seen.
   for (; age_s(0) > kNumbersShown_s; --count_) first_ = (first_ + 1) % kNumbersKept;
   next_ = 0;
   add_divers(world, snapshot);
