@@ -195,6 +195,7 @@ Result<std::uint64_t> FramesImpl::submit(const SubmitSync& sync) {
   signals[0].semaphore = timeline_;
   signals[0].value = next_value_;
   signals[1].semaphore = sync.signal;
+  signals[1].value = sync.signal_value;
   VkSubmitInfo2 info{VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
   info.waitSemaphoreInfoCount = sync.wait != VK_NULL_HANDLE ? 1 : 0;
   info.pWaitSemaphoreInfos = &wait_info;

@@ -84,7 +84,8 @@ class Frames {
   struct SubmitSync {
     VkSemaphore wait = VK_NULL_HANDLE;  // binary, at wait_stage
     VkPipelineStageFlags2 wait_stage = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    VkSemaphore signal = VK_NULL_HANDLE;  // binary
+    VkSemaphore signal = VK_NULL_HANDLE;
+    std::uint64_t signal_value = 0;  // of a timeline semaphore; a binary one has none
   };
   // Ends recording and submits; returns the timeline value that says it is done.
   virtual Result<std::uint64_t> submit(const SubmitSync& sync) = 0;

@@ -156,8 +156,8 @@ Status make_display(const DiveFlags& flags, const scene::Camera& camera, Screen&
   if (screen.headset) return screen.headset->attach(device);
   if (screen.window) {
     xr::Window& window = *screen.window;
-    NERITIC_TRY(screen.display, xr::DesktopDisplay::create(
-                                    device, window, {kFramesInFlight, camera.vertical_fov_rad}));
+    NERITIC_TRY(screen.display,
+                xr::make_desktop(device, window, {kFramesInFlight, camera.vertical_fov_rad}));
     NERITIC_TRY(screen.overlay, xr::Overlay::create(device, &window, window.content_scale()));
     return {};
   }

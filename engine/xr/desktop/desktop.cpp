@@ -3,6 +3,8 @@
 #include <cmath>
 #include <thread>
 
+#include "engine/core/log.hpp"
+#include "engine/xr/desktop/shared_display.hpp"
 #include "engine/xr/offscreen.hpp"
 
 namespace neritic::xr {
@@ -98,6 +100,18 @@ Status DesktopDisplay::end_frame(bool submitted) {
   NERITIC_TRY(const PresentOutcome outcome, swapchain_.present());
   if (outcome == PresentOutcome::kOutOfDate) stale_ = true;
   return {};
+}
+
+Result<std::unique_ptr<Display>> make_desktop(gpu::Device& device, Window& window,
+                                              const DesktopOptions& options) {
+  if (device.info().kind == "CPU") {
+    auto shared = SharedDisplay::create(device, window, options.vertical_fov_rad);
+    if (shared.ok()) return std::unique_ptr<Display>(std::move(*shared));
+    if (shared.error().code != ErrorCode::kUnsupported) return shared.error();
+    log_info("the window's pictures are not shared: {}", shared.error().message);
+  }
+  NERITIC_TRY(auto display, DesktopDisplay::create(device, window, options));
+  return std::unique_ptr<Display>(std::move(display));
 }
 
 }  // namespace neritic::xr

@@ -43,4 +43,9 @@ class DesktopDisplay final : public Display {
   std::uint32_t made_for_width_ = 0, made_for_height_ = 0;  // the window's size back then
 };
 
+// The window's display on this device: a SharedDisplay where the device is a processor and can
+// share memory with the server of the window, else a DesktopDisplay.
+Result<std::unique_ptr<Display>> make_desktop(gpu::Device& device, Window& window,
+                                              const DesktopOptions& options);
+
 }  // namespace neritic::xr

@@ -9,6 +9,9 @@
 
 #include "engine/core/check.hpp"
 
+// Declared here: GLFW's header of it needs that of RandR. A GLFW of another window system lacks it.
+extern "C" [[gnu::weak]] unsigned long glfwGetX11Window(GLFWwindow* window);
+
 namespace neritic::xr {
 namespace {
 
@@ -242,6 +245,11 @@ double Window::refresh_hz() const {
   GLFWmonitor* monitor = glfwGetPrimaryMonitor();
   const GLFWvidmode* mode = monitor ? glfwGetVideoMode(monitor) : nullptr;
   return mode && mode->refreshRate > 0 ? mode->refreshRate : kUnknown_hz;
+}
+
+std::optional<std::uint32_t> Window::x_window() const {
+  const unsigned long number = glfwGetX11Window ? glfwGetX11Window(window_) : 0;
+  return number != 0 ? std::optional(static_cast<std::uint32_t>(number)) : std::nullopt;
 }
 
 float Window::content_scale() const {

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,8 @@ class Window {
   double refresh_hz() const;    // of the monitor
   float content_scale() const;  // of text and panels: 2 on a dense screen
   GLFWwindow* handle() const { return window_; }
+  // Its number at the X server; absent: it is no X window.
+  std::optional<std::uint32_t> x_window() const;
 
  private:
   explicit Window(ActionTable actions) : actions_(std::move(actions)) {}

@@ -8,11 +8,14 @@ press_keys.py TITLE STEP...   TITLE: how the window's title begins; it is waited
   minimise        as a window manager says  restore
   file PATTERN    waits until a file is there
   take A B        the same, and renames it
+  seen FILE       what the X server shows of the window, as a .ppm
+  io FILE         copies /proc/$DIVE/io: bytes that the program has written so far
 Ends with 1 and a line if something does not come within 60 s.
 """
 import ctypes
 import glob
 import os
+import shutil
 import sys
 import time
 
@@ -32,6 +35,7 @@ x11.XWarpPointer.argtypes = [VOID, ULONG, ULONG, INT, INT, UINT, UINT, INT, INT]
 x11.XSetInputFocus.argtypes = [VOID, ULONG, INT, ULONG]
 x11.XResizeWindow.argtypes = [VOID, ULONG, UINT, UINT]
 x11.XSync.argtypes = [VOID, INT]
+x11.XGetImage.argtypes = [VOID, ULONG, INT, INT, UINT, UINT, ULONG, INT]
 x11.XInternAtom.argtypes = [VOID, ctypes.c_char_p, INT]
 x11.XInternAtom.restype = ULONG
 x11.XChangeProperty.argtypes = [VOID, ULONG, ULONG, ULONG, INT, INT, VOID, INT]
@@ -50,6 +54,16 @@ class ErrorEvent(ctypes.Structure):
     _fields_ = [("type", INT), ("display", VOID), ("resource", ULONG), ("serial", ULONG),
                 ("code", ctypes.c_ubyte), ("request", ctypes.c_ubyte), ("minor", ctypes.c_ubyte)]
 
+
+class Image(ctypes.Structure):
+    """The beginning of XImage."""
+    _fields_ = [("width", INT), ("height", INT), ("offset", INT), ("format", INT),
+                ("data", ctypes.POINTER(ctypes.c_ubyte)), ("byte_order", INT), ("unit", INT),
+                ("bit_order", INT), ("pad", INT), ("depth", INT), ("bytes_per_line", INT),
+                ("bits_per_pixel", INT)]
+
+
+x11.XGetImage.restype = ctypes.POINTER(Image)
 
 # Codes of the errors since they were last looked at. Without a handler Xlib ends the program.
 errors = []
@@ -125,6 +139,22 @@ class Driver:
         x11.XWarpPointer(self.display, 0, self.window, 0, 0, 0, 0, x, y)
         x11.XSync(self.display, 0)
 
+    def write_seen(self, path):
+        """The server's bytes are blue, green, red and one that says nothing."""
+        root, x, y, width, height, border, depth = ULONG(), INT(), INT(), UINT(), UINT(), UINT(), UINT()
+        x11.XGetGeometry(VOID(self.display), ULONG(self.window),
+                         *map(ctypes.byref, (root, x, y, width, height, border, depth)))
+        image = x11.XGetImage(self.display, self.window, 0, 0, width.value, height.value,
+                              (1 << 64) - 1, 2).contents
+        rows = bytes(image.data[:image.bytes_per_line * image.height])
+        with open(path, "wb") as file:
+            file.write(b"P6 %d %d 255\n" % (image.width, image.height))
+            for row in range(image.height):
+                texels = rows[row * image.bytes_per_line:][:4 * image.width]
+                rgb = bytearray(3 * image.width)
+                rgb[0::3], rgb[1::3], rgb[2::3] = texels[2::4], texels[1::4], texels[0::4]
+                file.write(rgb)
+
     def do(self, step):
         name, *rest = step.split(maxsplit=1)
         rest = rest[0] if rest else ""
@@ -158,6 +188,10 @@ class Driver:
             source, target = rest.split()
             wait_for(f"the file {source}", lambda: os.path.exists(source))
             os.rename(source, target)
+        elif name == "seen":
+            self.write_seen(rest)
+        elif name == "io":
+            shutil.copyfile(f"/proc/{os.environ['DIVE']}/io", rest)
         elif name == "file":
             wait_for(f"the file {rest}", lambda: glob.glob(rest))
         else:

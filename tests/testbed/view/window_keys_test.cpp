@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "engine/core/image.hpp"
+#include "engine/scene/image_file.hpp"
 #include "tests/support/device_gate.hpp"
 #include "tests/testbed/view/window_run.hpp"
 
@@ -146,6 +148,101 @@ TEST_F(WindowKeys, AMinimisedWindowDrawsNothingWhileTheDiveGoesOn) {
     worked_before = works;
   }
   EXPECT_GT(longest_s, 2.5);
+}
+
+// A part of a picture that has no panels.
+ImageU8 middle_of(const ImageU8& image) {
+  ImageU8 out(image.width / 4, image.height / 4, 3);
+  for (std::uint32_t y = 0; y < out.height; ++y)
+    std::copy_n(&image.at(3 * image.width / 8, image.height / 2 + y), std::size_t{3} * out.width,
+                &out.at(0, y));
+  return out;
+}
+
+ImageU8 read_ppm(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string magic;
+  std::uint32_t width = 0, height = 0, most = 0;
+  file >> magic >> width >> height >> most;
+  file.get();
+  ImageU8 image(width, height, 3);
+  file.read(reinterpret_cast<char*>(image.data.data()),
+            static_cast<std::streamsize>(image.data.size()));
+  EXPECT_TRUE(file.good() && magic == "P6") << path;
+  return image;
+}
+
+// Of all that the program wrote to files and sockets.
+double written_bytes(const fs::path& path) {
+  std::istringstream text(test::text_of(path));
+  std::string key;
+  double value = -1.0;
+  while (text >> key >> value)
+    if (key == "wchar:") return value;
+  return -1.0;
+}
+
+// A paused dive, so that a screenshot and what the server shows are of one picture: in the first
+// size of the window, then in another, whose width is no multiple of a tile's. Its frames between
+// the two looks at what it wrote are of one size.
+const std::vector<std::string> kShownSteps = {"wait 0.3",
+                                              "key F12",
+                                              "file neritic_0001.png",
+                                              "key Return",
+                                              "wait 0.5",
+                                              "key F12",
+                                              "file neritic_0002.png",
+                                              "wait 0.3",
+                                              "seen first.ppm",
+                                              "io io_1",
+                                              "key F12",
+                                              "file neritic_0003.png",
+                                              "key F12",
+                                              "file neritic_0004.png",
+                                              "io io_2",
+                                              "size 733 451",
+                                              "wait 0.7",
+                                              "key F12",
+                                              "file neritic_0005.png",
+                                              "wait 0.3",
+                                              "seen second.ppm",
+                                              "key Escape"};
+
+class ShownInWindow : public WindowKeys {
+ protected:
+  test::WindowRun show(const std::string& server) {
+    return test::drive_window(scratch_.path(), "flight.toml --size 640x480 --quality full",
+                              kShownSteps, server);
+  }
+  void expect_equal(const std::string& screenshot, const std::string& seen) {
+    NERITIC_ASSERT_OK(const ImageU8 image, scene::read_image8(scratch_ / screenshot, 3));
+    const ImageU8 shown = read_ppm(scratch_ / seen);
+    ASSERT_EQ(image.width, shown.width);
+    ASSERT_EQ(image.height, shown.height);
+    EXPECT_TRUE(middle_of(image).data == middle_of(shown).data) << screenshot << ' ' << seen;
+  }
+};
+
+TEST_F(ShownInWindow, TheXServerShowsWhatIsDrawnAndGetsNoTexelsThroughItsSocket) {
+  const test::WindowRun run = show("");
+  if (test::may_skip_without_device()) GTEST_SKIP() << run.err;
+  ASSERT_EQ(run.status, 0) << run.err;
+  expect_equal("neritic_0002.png", "first.ppm");
+  expect_equal("neritic_0005.png", "second.ppm");
+  // Two frames at least, of 1.2 MB each; screenshots of them are files of 20 kB.
+  const double before = written_bytes(scratch_ / "io_1"), after = written_bytes(scratch_ / "io_2");
+  ASSERT_GT(before, 0.0);
+  EXPECT_LT(after - before, 2.0 * 640 * 480 * 4);
+}
+
+TEST_F(ShownInWindow, AServerThatSharesNoMemoryShowsTheSamePicture) {
+  const test::WindowRun run = show("-extension MIT-SHM");
+  if (test::may_skip_without_device()) GTEST_SKIP() << run.err;
+  ASSERT_EQ(run.status, 0) << run.err;
+  expect_equal("neritic_0002.png", "first.ppm");
+  expect_equal("neritic_0005.png", "second.ppm");
+  EXPECT_GT(written_bytes(scratch_ / "io_2") - written_bytes(scratch_ / "io_1"),
+            2.0 * 640 * 480 * 4);
 }
 
 TEST_F(WindowKeys, AReplayIsNeitherSavedNorRecorded) {

@@ -1,0 +1,50 @@
+// The desktop window of a device that is a processor, on an X server of the same machine: pictures
+// are composed in an image of the program's own, and the server reads them from memory that both
+// share. Rendering thread, which is the main thread.
+#pragma once
+
+#include <memory>
+
+#include "engine/gpu/resources.hpp"
+#include "engine/xr/compositor.hpp"
+#include "engine/xr/desktop/shared_pictures.hpp"
+#include "engine/xr/desktop/window.hpp"
+
+namespace neritic::xr {
+
+class SharedDisplay final : public Display {
+ public:
+  // window and device must outlive it. kUnsupported, with the reason, where nothing can be shared.
+  static Result<std::unique_ptr<SharedDisplay>> create(gpu::Device& device, Window& window,
+                                                       double vertical_fov_rad);
+  ~SharedDisplay() override;
+  Result<DisplayFrame> begin_frame(const Pose& world_from_stage) override;
+  Result<ShownPicture> declare(graph::FrameGraph& graph, const Pose& world_from_head,
+                               std::span<const Layer> layers) override;
+  gpu::Frames::SubmitSync sync() const override;
+  // Waits for the device.
+  Status end_frame(bool submitted) override;
+  ActionValues take_actions(const InputClaims& claims) override {
+    return window_.take_actions(claims);
+  }
+
+ private:
+  SharedDisplay(gpu::Device& device, Window& window, double vertical_fov_rad)
+      : device_(device), window_(window), vertical_fov_rad_(vertical_fov_rad) {}
+  Status fit(std::uint32_t width, std::uint32_t height);
+  Status await_device() const;
+
+  gpu::Device& device_;
+  Window& window_;
+  double vertical_fov_rad_;
+  std::unique_ptr<SharedPictures> pictures_;
+  std::unique_ptr<Compositor> compositor_;
+  VkSemaphore drawn_ = VK_NULL_HANDLE;  // a timeline
+  std::uint64_t drawing_ = 1;           // its value when this frame is drawn
+  gpu::Image image_;
+  gpu::Buffer texels_;   // of the composed picture
+  ViewGroup group_;      // of this frame
+  TimeNs begun_ns_ = 0;  // the last frame
+};
+
+}  // namespace neritic::xr
