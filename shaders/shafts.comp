@@ -25,6 +25,7 @@ layout(set = 0, binding = kShaftOut, r32f) writeonly uniform image2DArray out_im
 
 layout(constant_id = kSpecShaftTerms) const uint kTerms = ~0u;
 layout(constant_id = kSpecShaftCascades) const uint kCascades = 0;
+layout(constant_id = kSpecShaftSamples) const uint samples = 1;
 bool light_has(uint term) { return (kTerms & term) != 0u; }
 uint lamp_count() { return 0u; }
 uint glow_samples() { return 1u; }
@@ -38,7 +39,7 @@ VisibilityParams sun;  // its maps
 #include "shared/sun_beam.glsl"
 
 void main() {
-  uint layer = gl_WorkGroupID.z, samples = params.samples;
+  uint layer = gl_WorkGroupID.z;
   vec3 eye = views[layer].eye, ray_corner = views[layer].ray_corner, ray_dx = views[layer].ray_dx, ray_dy = views[layer].ray_dy;
   float near_m = views[layer].near_m, farthest_m = params.reach_m;
   take_light();

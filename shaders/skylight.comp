@@ -23,6 +23,7 @@ layout(set = 0, binding = kSkylightGrid, scalar) readonly buffer Grid { float op
 layout(set = 0, binding = kSkylightOut, rgba8) writeonly uniform image2DArray out_image;
 
 layout(constant_id = kSpecSkylightTerms) const uint kTerms = ~0u;
+layout(constant_id = kSpecSkylightSamples) const uint samples = 1;
 bool light_has(uint term) { return (kTerms & term) != 0u; }
 uint lamp_count() { return 0u; }
 uint glow_samples() { return 1u; }
@@ -49,7 +50,7 @@ float open_at(vec3 place) {
 }
 
 void main() {
-  uint layer = gl_WorkGroupID.z, samples = params.samples;
+  uint layer = gl_WorkGroupID.z;
   vec3 eye = views[layer].eye, ray_corner = views[layer].ray_corner, ray_dx = views[layer].ray_dx, ray_dy = views[layer].ray_dy;
   float near_m = views[layer].near_m;
   take_light();

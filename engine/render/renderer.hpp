@@ -76,12 +76,14 @@ struct ShaftInputs {
   std::uint32_t cascade_count = 0;
   graph::ImageHandle cascades, caustics;
   shared::ShaftParams params{};
+  std::uint32_t samples = 1;  // along a sight
 };
 
 // Inputs of skylight: its grid's cells as floats (engine/render/skylight.hpp), and where they lie.
 struct SkylightInputs {
   const gpu::Buffer* grid = nullptr;
   shared::SkylightParams params{};
+  std::uint32_t samples = 1;  // along a sight
 };
 
 // Images of what stands in the light's way to the surfaces of one view set. A handle is empty where
@@ -330,8 +332,8 @@ class Renderer {
   std::map<VisibilityKnobs, gpu::Pipeline> visibility_;
   gpu::Pipeline visibility_blur_, caustics_, caustics_resolve_, shade_tiles_;
   // By terms and number of the sun's maps.
-  std::map<std::array<std::uint32_t, 2>, gpu::Pipeline> shafts_;
-  std::map<std::uint32_t, gpu::Pipeline> skylight_;  // by terms
+  std::map<std::array<std::uint32_t, 3>, gpu::Pipeline> shafts_;
+  std::map<std::array<std::uint32_t, 2>, gpu::Pipeline> skylight_;  // by terms and samples
   gpu::Pipeline shafts_blur_, focus_, shutter_, shutter_tiles_, shutter_reach_;
   gpu::Pipeline band_albedo_;
   std::map<std::uint32_t, gpu::Pipeline> merge_;             // by pictures

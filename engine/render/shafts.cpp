@@ -21,7 +21,7 @@ Result<graph::ImageHandle> Renderer::declare_shafts(graph::FrameGraph& graph,
                                                     const GBuffer& gbuffer, const ViewSet& views,
                                                     const shared::Lighting& lighting,
                                                     const ShaftInputs& inputs) {
-  gpu::Pipeline& pipeline = shafts_[{lighting.terms, inputs.cascade_count}];
+  gpu::Pipeline& pipeline = shafts_[{lighting.terms, inputs.cascade_count, inputs.samples}];
   if (!pipeline) {
     gpu::ComputePipelineDesc desc;
     desc.name = "shafts";
@@ -35,7 +35,8 @@ Result<graph::ImageHandle> Renderer::declare_shafts(graph::FrameGraph& graph,
                             {shared::kShaftCaustics, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
                             {shared::kShaftOut, kShaftStorage}};
     desc.constants = {{shared::kSpecShaftTerms, lighting.terms},
-                      {shared::kSpecShaftCascades, inputs.cascade_count}};
+                      {shared::kSpecShaftCascades, inputs.cascade_count},
+                      {shared::kSpecShaftSamples, inputs.samples}};
     NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
   }
   if (!shafts_blur_) {

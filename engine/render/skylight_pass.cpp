@@ -13,7 +13,7 @@ Result<graph::ImageHandle> Renderer::declare_skylight(graph::FrameGraph& graph,
                                                       const SkylightInputs& inputs) {
   constexpr auto kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
                  kTexels = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
-  gpu::Pipeline& pipeline = skylight_[lighting.terms];
+  gpu::Pipeline& pipeline = skylight_[{lighting.terms, inputs.samples}];
   if (!pipeline) {
     gpu::ComputePipelineDesc desc;
     desc.name = "skylight";
@@ -25,7 +25,8 @@ Result<graph::ImageHandle> Renderer::declare_skylight(graph::FrameGraph& graph,
                             {shared::kSkylightNormal, kTexels},
                             {shared::kSkylightGrid, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
                             {shared::kSkylightOut, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}};
-    desc.constants = {{shared::kSpecSkylightTerms, lighting.terms}};
+    desc.constants = {{shared::kSpecSkylightTerms, lighting.terms},
+                      {shared::kSpecSkylightSamples, inputs.samples}};
     NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
   }
   const std::uint32_t width = (gbuffer.width + shared::kSkylightStep - 1) / shared::kSkylightStep,

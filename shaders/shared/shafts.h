@@ -14,7 +14,6 @@ NERITIC_CONST float kShaftMost = 8.0;
 NERITIC_CONST float kShaftSteps = 1023.0;
 
 struct ShaftParams {
-  uint samples;  // along a sight
   float reach_m;
 };
 
@@ -26,9 +25,10 @@ NERITIC_CONST uint kShaftDepth = 4;
 NERITIC_CONST uint kShaftCascades = 5;
 NERITIC_CONST uint kShaftCaustics = 6;
 NERITIC_CONST uint kShaftOut = 7;  // r32f: shared/shaft_texel.glsl
-// Specialisation constants: the terms of light, and the sun's maps (0: none).
+// Specialisation constants: the terms of light, the sun's maps (0: none), samples along a sight.
 NERITIC_CONST uint kSpecShaftTerms = 0;
 NERITIC_CONST uint kSpecShaftCascades = 1;
+NERITIC_CONST uint kSpecShaftSamples = 2;
 
 NERITIC_CONST uint kShaftBlurIn = 0;
 NERITIC_CONST uint kShaftBlurOut = 1;

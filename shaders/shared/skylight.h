@@ -15,7 +15,6 @@ struct SkylightParams {
   uint nx;  // cells
   uint ny;
   uint nz;
-  uint samples;  // along a sight
 };
 
 NERITIC_CONST uint kSkylightViews = 0;
@@ -26,8 +25,10 @@ NERITIC_CONST uint kSkylightNormal = 4;
 NERITIC_CONST uint kSkylightGrid = 5;  // floats, [y][z][x]
 NERITIC_CONST uint kSkylightOut =
     6;  // rgba8: along the sight, at its end, 1, half visibility_distance
-// Specialisation constant: the terms of light.
+// Specialisation constants: the terms of light; samples along a sight, since Mesa's CPU driver
+// compiles a loop to a number of a uniform block anew in each frame.
 NERITIC_CONST uint kSpecSkylightTerms = 0;
+NERITIC_CONST uint kSpecSkylightSamples = 1;
 
 NERITIC_SHARED_END
 #endif

@@ -88,8 +88,8 @@ Status declare_shafts(const FrameParts& frame, const std::string& prefix, const 
   inputs.cascade_count = cascades ? static_cast<std::uint32_t>(work.cascades.size()) : 0;
   inputs.caustics = light.caustics;
   if (cascades) inputs.sun = render::visibility_params(scene, views, lighting, work.cascades);
-  inputs.params = {times(scene.sun->shafts->samples, detail.shaft_samples, 1, 256),
-                   static_cast<float>(scene.sun->shafts->reach_m)};
+  inputs.samples = times(scene.sun->shafts->samples, detail.shaft_samples, 1, 256);
+  inputs.params = {static_cast<float>(scene.sun->shafts->reach_m)};
   NERITIC_TRY(light.shafts,
               frame.renderer.declare_shafts(frame.graph, prefix, g, views, lighting, inputs));
   light.shaft_inputs = inputs;
@@ -107,16 +107,15 @@ Status declare_skylight(const FrameParts& frame, const std::string& prefix,
   if (!grid) return {};
   lighting.terms |= shared::kLightSkylight;
   const std::uint32_t samples = frame.scene.ambient->skylight->samples;
-  NERITIC_TRY(light.skylight,
-              frame.renderer.declare_skylight(
-                  frame.graph, prefix, g, views, lighting,
-                  {.grid = &frame.skylight.cells(),
-                   .params = {.low = Vec3f(grid->low_m - views.origin_m()),
-                              .cell_m = static_cast<float>(grid->cell_m),
-                              .nx = grid->nx,
-                              .ny = grid->ny,
-                              .nz = grid->nz,
-                              .samples = times(samples, detail.shaft_samples, 1, 256)}}));
+  NERITIC_TRY(light.skylight, frame.renderer.declare_skylight(
+                                  frame.graph, prefix, g, views, lighting,
+                                  {.grid = &frame.skylight.cells(),
+                                   .params = {.low = Vec3f(grid->low_m - views.origin_m()),
+                                              .cell_m = static_cast<float>(grid->cell_m),
+                                              .nx = grid->nx,
+                                              .ny = grid->ny,
+                                              .nz = grid->nz},
+                                   .samples = times(samples, detail.shaft_samples, 1, 256)}));
   return {};
 }
 

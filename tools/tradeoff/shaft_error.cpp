@@ -140,7 +140,8 @@ Result<OpticsPoint> shaft_point(gpu::Device& device, std::uint32_t samples, bool
         depth, graph::ImportState{.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
     render::ShaftInputs inputs;
     NERITIC_TRY(inputs.caustics, renderer->declare_caustics(graph, params));
-    inputs.params = {samples, static_cast<float>(kReach_m)};
+    inputs.samples = samples;
+    inputs.params = {static_cast<float>(kReach_m)};
     NERITIC_TRY(const graph::ImageHandle shafts,
                 renderer->declare_shafts(graph, "", gbuffer, views, light, inputs));
     NERITIC_TRY(const testbed::Readback net_pin,
