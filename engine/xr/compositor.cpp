@@ -203,6 +203,27 @@ const ProjectionLayer* projection_of(std::span<const Layer> layers, std::size_t 
   return nullptr;
 }
 
+std::optional<PanelCorner> texel_on_pixel(const PanelLayer& panel, const ViewGroup& group,
+                                          const Pose& world_from_head, std::uint32_t width,
+                                          std::uint32_t height) {
+  if (group.views.size() != 1) return {};
+  const shared::PanelCorners at = corners_of(panel, group, world_from_head)[0];
+  const double w = at.middle.w;
+  if (!(w > 0.0)) return {};
+  constexpr double kNear_px = 0.01;
+  const auto is = [](double a, double b) { return std::abs(a - b) < kNear_px; };
+  // Half pictures to pixels.
+  const double across = 0.5 * group.width / w, down = 0.5 * group.height / w;
+  const bool straight = is(at.right.y * down, 0.0) && is(at.up.x * across, 0.0) &&
+                        std::abs(at.right.w) < 1e-6 * w && std::abs(at.up.w) < 1e-6 * w;
+  if (!straight || !is(2.0 * at.right.x * across, width) || !is(-2.0 * at.up.y * down, height))
+    return {};
+  const double left = (at.middle.x - at.right.x + w) * across,
+               top = (at.middle.y + at.up.y + w) * down;
+  if (!is(left, std::round(left)) || !is(top, std::round(top))) return {};
+  return PanelCorner{static_cast<int>(std::lround(left)), static_cast<int>(std::lround(top))};
+}
+
 Result<std::unique_ptr<Compositor>> Compositor::create(gpu::Device& device, VkFormat format) {
   std::unique_ptr<Compositor> made(new Compositor(device, format));
   NERITIC_TRY(made->sampler_,

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "engine/gpu/device.hpp"
 #include "engine/gpu/pipeline.hpp"
@@ -21,6 +22,15 @@ graph::ImageHandle copy_depth(graph::FrameGraph& graph, const std::string& pass,
 
 // The projection layer of a group; nullptr: none.
 const ProjectionLayer* projection_of(std::span<const Layer> layers, std::size_t group);
+
+// The pixel of a picture of the only view where a panel's left upper texel lies, if its texels lie
+// on pixels: to a hundredth of one. size: of the panel's image.
+struct PanelCorner {
+  int left = 0, top = 0;
+};
+std::optional<PanelCorner> texel_on_pixel(const PanelLayer& panel, const ViewGroup& group,
+                                          const Pose& world_from_head, std::uint32_t width,
+                                          std::uint32_t height);
 
 class Compositor {
  public:

@@ -30,6 +30,34 @@ Vec2 pixel_of(const ViewGroup& group, std::size_t view, const Vec3& point_in_hea
           (v.tangents.top - y) / (v.tangents.top - v.tangents.bottom) * group.height};
 }
 
+// A panel straight ahead whose left upper corner lies at a place in pixels.
+PanelLayer panel_at(const ViewGroup& group, double left, double top, double width, double height) {
+  const FrustumTangents& t = group.views[0].tangents;
+  const double across = (t.right - t.left) / group.width, down = (t.top - t.bottom) / group.height;
+  return {.pose = Pose{Vec3(t.left + across * (left + 0.5 * width),
+                            t.top - down * (top + 0.5 * height), -1.0)},
+          .size_m = {across * width, down * height}};
+}
+
+TEST(TexelOnPixel, APanelOfWholePixelsHasItsCornerAndNoOtherHasOne) {
+  const ViewGroup group = one_view(64, 48, 1.0);
+  const auto corner = texel_on_pixel(panel_at(group, 13, -7, 20, 10), group, {}, 20, 10);
+  ASSERT_TRUE(corner);
+  EXPECT_EQ(corner->left, 13);
+  EXPECT_EQ(corner->top, -7);
+  EXPECT_FALSE(texel_on_pixel(panel_at(group, 13.4, 7, 20, 10), group, {}, 20, 10));
+  EXPECT_FALSE(texel_on_pixel(panel_at(group, 13, 7, 20, 10), group, {}, 21, 10));
+  PanelLayer turned = panel_at(group, 13, 7, 20, 10);
+  turned.pose.rotation = glm::angleAxis(0.02, Vec3(0, 1, 0));
+  EXPECT_FALSE(texel_on_pixel(turned, group, {}, 20, 10));
+  PanelLayer behind = panel_at(group, 13, 7, 20, 10);
+  behind.pose.position_m.z = 1.0;
+  EXPECT_FALSE(texel_on_pixel(behind, group, {}, 20, 10));
+  ViewGroup pair = group;
+  pair.views.push_back(pair.views[0]);
+  EXPECT_FALSE(texel_on_pixel(panel_at(group, 13, 7, 20, 10), pair, {}, 20, 10));
+}
+
 TEST_F(CompositorTest, NoLayersShowBlack) {
   graph::FrameGraph graph;
   const Shown shown = show({{one_view(8, 4, 1.0)}}, graph, {}, {});

@@ -1,10 +1,13 @@
-// The desktop window of a device that is a processor, on an X server of the same machine: pictures
-// are composed in an image of the program's own, and the server reads them from memory that both
-// share. Rendering thread, which is the main thread.
+// The desktop window of a device that is a processor, on an X server of the same machine: the host
+// composes the device's pictures in memory that it shares with the server. Where panels do not lie
+// texel on pixel, and for screenshots, the device composes them. Rendering thread, which is the
+// main thread.
 #pragma once
 
 #include <memory>
+#include <vector>
 
+#include "engine/draw2d/upscale.hpp"
 #include "engine/gpu/resources.hpp"
 #include "engine/xr/compositor.hpp"
 #include "engine/xr/desktop/shared_pictures.hpp"
@@ -33,6 +36,17 @@ class SharedDisplay final : public Display {
       : device_(device), window_(window), vertical_fov_rad_(vertical_fov_rad) {}
   Status fit(std::uint32_t width, std::uint32_t height);
   Status await_device() const;
+  // An image of this frame that the host composes.
+  struct Part {
+    gpu::Buffer texels;
+    std::uint32_t width = 0, height = 0;
+    PanelCorner corner;
+    std::vector<draw2d::PixelRect> drawn;
+  };
+  Result<bool> declare_parts(graph::FrameGraph& graph, const Pose& world_from_head,
+                             std::span<const Layer> layers);
+  Status bring(graph::FrameGraph& graph, graph::ImageHandle image, std::size_t index);
+  void compose(std::span<std::byte> picture) const;
 
   gpu::Device& device_;
   Window& window_;
@@ -42,9 +56,10 @@ class SharedDisplay final : public Display {
   VkSemaphore drawn_ = VK_NULL_HANDLE;  // a timeline
   std::uint64_t drawing_ = 1;           // its value when this frame is drawn
   gpu::Image image_;
-  gpu::Buffer texels_;   // of the composed picture
-  ViewGroup group_;      // of this frame
-  TimeNs begun_ns_ = 0;  // the last frame
+  std::vector<Part> parts_;  // the view's picture, then the panels
+  std::size_t used_ = 0;     // of them, in this frame
+  ViewGroup group_;          // of this frame
+  TimeNs begun_ns_ = 0;      // the last frame
 };
 
 }  // namespace neritic::xr
