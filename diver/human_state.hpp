@@ -19,6 +19,7 @@ struct HumanInputs {
   // The water around the diver (WaterFlow, motion.hpp): at the step's start, how that changes where
   // the diver is, and the water's own acceleration.
   Vec3 current_ned_m_s{0.0}, current_change_ned_m_s2{0.0}, water_acceleration_ned_m_s2{0.0};
+  Vec3 waves_ned_m_s{0.0};         // the part of the current that waves make, to and fro
   double other_power_w = 0.0;      // work beside what limbs do to the water
   double ventilation_l_min = 0.0;  // as measured; 0: by effort
   double breath_bias_m3 = 0.0;     // mean lung volume less that at rest
@@ -32,6 +33,7 @@ struct HumanInputs {
     field("current_ned_m_s", self.current_ned_m_s);
     field("current_change_ned_m_s2", self.current_change_ned_m_s2);
     field("water_acceleration_ned_m_s2", self.water_acceleration_ned_m_s2);
+    field("waves_ned_m_s", self.waves_ned_m_s);
     field("other_power_w", self.other_power_w);
     field("ventilation_l_min", self.ventilation_l_min);
     field("breath_bias_m3", self.breath_bias_m3);
@@ -41,6 +43,11 @@ struct HumanInputs {
     field("instruments", self.instruments);
   }
 };
+
+// The current without waves.
+inline Vec3 steady_current_ned_m_s(const HumanInputs& in) {
+  return in.current_ned_m_s - in.waves_ned_m_s;
+}
 
 // l: breath and gas, heart and gaze, tissues, risk.
 struct LifeState {

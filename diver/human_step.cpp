@@ -45,8 +45,8 @@ void take_inputs(const HumanInputs& in, HumanState& state) {
   std::uint64_t& refused = state.refused_inputs;
   for (std::size_t i = 0; i < kJoints; ++i)
     if (!take_rotation(in.joints[i], held.joints[i])) ++refused;
-  take(within(in.current_ned_m_s, kMostCurrent_m_s), in.current_ned_m_s, held.current_ned_m_s,
-       refused);
+  for (const auto velocity : {&HumanInputs::current_ned_m_s, &HumanInputs::waves_ned_m_s})
+    take(within(in.*velocity, kMostCurrent_m_s), in.*velocity, held.*velocity, refused);
   for (const auto acceleration :
        {&HumanInputs::current_change_ned_m_s2, &HumanInputs::water_acceleration_ned_m_s2})
     take(within(in.*acceleration, kMostWaterAcceleration_m_s2), in.*acceleration,

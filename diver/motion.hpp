@@ -31,6 +31,7 @@ struct WaterFlow {
   Vec3 current_m_s{0.0};        // at the step's start
   Vec3 change_m_s2{0.0};        // of the current where the body is, as it moves
   Vec3 acceleration_m_s2{0.0};  // of the water itself, Du/Dt
+  Vec3 waves_m_s{0.0};          // the part of the current that waves make, to and fro
   double head_m = 0.0;          // its pressure is that of still water deeper by this much (waves)
 
   WaterFlow() = default;

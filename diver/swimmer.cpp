@@ -28,20 +28,23 @@ double between_beats(BeatNotch& notch, double value, double hz, double dt_s) {
 }
 
 // How hard to kick for that speed, within what the person has left: power goes with the cube of
-// beats.
+// beats. Beats slower than kSlowestBeat_hz are smaller instead.
 void pace(const Body& body, const SwimmerSettings& settings, double speed_m_s, double wanted_m_s,
-          const LifeState& life, SwimmerState& swimmer, double dt_s) {
-  const bool kicks = wanted_m_s > settings.gliding_speed_m_s;
-  follow(swimmer.effort, kicks ? 1.0 : 0.0, 1.0, dt_s);
+          bool kicks, const LifeState& life, SwimmerState& swimmer, double dt_s) {
   const double error = wanted_m_s - speed_m_s;
-  if (kicks) swimmer.speed_sum = std::clamp(swimmer.speed_sum + error * dt_s, -3.0, 3.0);
+  const auto needed_hz = [&] {
+    return (wanted_m_s + 0.3 * error + 0.15 * swimmer.speed_sum) / kMetresABeat;
+  };
+  // Legs that rest already are not to rest for longer by what is remembered.
+  if (kicks && (error > 0.0 || needed_hz() > 0.0))
+    swimmer.speed_sum = std::clamp(swimmer.speed_sum + error * dt_s, -3.0, 3.0);
   const double kick_w = metabolic_power_w(life.limb_power_w, life.moving_power_w);
   const double strong_hz =
       std::max(swimmer.frequency_hz, 0.1) *
       std::cbrt(strongest_power_w(body.fitness, life.spent_j) / std::max(kick_w, 1.0));
-  const double wanted_hz =
-      std::clamp((wanted_m_s + 0.3 * error + 0.15 * swimmer.speed_sum) / kMetresABeat, 0.25,
-                 settings.most_frequency_hz);
+  const double wanted_hz = std::clamp(needed_hz(), kSlowestBeat_hz, settings.most_frequency_hz);
+  const double size = std::clamp(needed_hz() / kSlowestBeat_hz, 0.0, 1.0);
+  follow(swimmer.effort, kicks ? size : 0.0, 1.0, dt_s);
   const double asked_hz = std::min(wanted_hz, strong_hz);
   follow(swimmer.frequency_hz, asked_hz, 1.0, dt_s);
   swimmer.phase_rad =
@@ -115,15 +118,46 @@ void balance(const Body& body, double sink_too_much_m_s, const HumanState& state
   }
 }
 
+// Over ground, without the to and fro of waves.
+Vec3 steady_velocity(const HumanState& state) {
+  return state.root.attitude * state.root.velocity.linear() - state.held.waves_ned_m_s;
+}
+
+// The level part of the current without waves.
+struct Drift {
+  double x_m_s = 0.0, y_m_s = 0.0, m_s = 0.0;
+};
+Drift drift_of(const HumanState& state) {
+  const Vec3 current = steady_current_ned_m_s(state.held);
+  return {current.x, current.y, std::hypot(current.x, current.y)};
+}
+bool is_current(const Drift& drift) {
+  return drift.m_s > kStill_m_s;
+}
+
 // Where the head is to point: to the goal, some way into a current from the side.
 double wanted_heading(const SwimGoal& goal, const HumanState& state, double heading_rad) {
   const Vec3 way = goal.target_ned_m - state.root.position_ned_m;
   const double level = std::hypot(way.x, way.y);
   if (level < 0.1) return heading_rad;
-  const Vec3 drift = state.held.current_ned_m_s;
-  const double aside = (-drift.x * way.y + drift.y * way.x) / level;  // to starboard of the way
+  const Drift drift = drift_of(state);
+  const double aside =
+      (drift.y_m_s * way.x - drift.x_m_s * way.y) / level;  // to starboard of the way
   const double crab = std::asin(std::clamp(aside / std::max(goal.speed_m_s, 0.1), -0.7, 0.7));
   return std::atan2(way.y, way.x) - crab;
+}
+
+// Where the head of a hovering diver points in a current: into it, and so far to a side that the
+// place comes nearer.
+double into_current(const SwimGoal& goal, const HumanState& state) {
+  const Vec3 way = goal.target_ned_m - state.root.position_ned_m;
+  const Vec3 velocity = steady_velocity(state);
+  const Drift drift = drift_of(state);
+  const double x = -drift.x_m_s / drift.m_s, y = -drift.y_m_s / drift.m_s;
+  const double aside_m = x * way.y - y * way.x, aside_m_s = x * velocity.y - y * velocity.x;
+  const double crab_rad =
+      (kAsideMetre * aside_m - kAsideSpeed_s * aside_m_s) / std::max(drift.m_s, kLeastDrift_m_s);
+  return std::atan2(y, x) + std::clamp(crab_rad, -kMostCrab_rad, kMostCrab_rad);
 }
 
 // Whether a diver is too deep and has nothing that lifts him but his fins.
@@ -134,8 +168,21 @@ bool sinks_away(const Body& body, const HumanState& state, double below_m, Swimm
   return swimmer.goes_back == kKicksUp;
 }
 
+// How fast a hovering diver swims against a current to stay, or to come back; not at all, once far
+// enough upstream. In a slow current the kick waits until the head has come round.
+double against_current_m_s(const SwimGoal& goal, const HumanState& state) {
+  const Vec3 way = goal.target_ned_m - state.root.position_ned_m;
+  const Drift drift = drift_of(state);
+  const double upstream_m = -(way.x * drift.x_m_s + way.y * drift.y_m_s) / drift.m_s;
+  const double off_rad = into_current(goal, state) - attitude_of(state.root.attitude).heading_rad;
+  const double share =
+      drift.m_s < kSlowCurrent_m_s ? std::clamp(2.0 * std::cos(off_rad) - 0.5, 0.0, 1.0) : 1.0;
+  const double gain_m_s = std::min(kGainMetre_1_s * upstream_m, kMostGain_m_s);
+  return share * std::clamp(drift.m_s + gain_m_s, 0.0, kMostAgainst_m_s);
+}
+
 // The goal of a hovering diver: to rest; to swim back once drifted off, or once tilted by more than
-// posture corrects, since fins right a body that has way. In a current the head stays into it.
+// posture corrects, since fins right a body that has way. In a current, to swim against it.
 SwimGoal hover_goal(const Body& body, SwimGoal goal, const HumanState& state,
                     SwimmerState& swimmer) {
   const Vec3 way = goal.target_ned_m - state.root.position_ned_m;
@@ -143,31 +190,26 @@ SwimGoal hover_goal(const Body& body, SwimGoal goal, const HumanState& state,
     goal.speed_m_s = kKickUp_m_s;
     return goal;
   }
-  const Vec3& drift = state.held.current_ned_m_s;
-  const double drift_m_s = std::hypot(drift.x, drift.y);
-  const bool current = drift_m_s > kStill_m_s;
-  double off_m = std::hypot(way.x, way.y), near_m = kNear_m;
-  if (current) {
-    const Vec3 against = Vec3(-drift.x, -drift.y, 0.0) / drift_m_s;
-    const double aside_m = std::abs(way.x * against.y - way.y * against.x);
-    off_m = way.x * against.x + way.y * against.y + aside_m;
-    near_m = -kNear_m;  // somewhat upstream
-    goal.target_ned_m += kAimAhead_m * against;
-  }
+  const double off_m = std::hypot(way.x, way.y);
   const double tilt_rad = std::abs(attitude_of(state.root.attitude).pitch_rad);
   if (tilt_rad > kTilted_rad)
     swimmer.goes_back = kRightsHimself;
   else if (off_m > kAdrift_m && swimmer.goes_back == 0)
     swimmer.goes_back = kGoesBack;
-  // Level again, righting is done: at its speed a diver would circle around a near place for ever.
-  const bool there = off_m < near_m || swimmer.goes_back == kRightsHimself;
+  // Level again, righting is done: so fast, a diver would circle around a near place for ever.
+  const bool there = off_m < kNear_m || swimmer.goes_back == kRightsHimself;
   if (there && tilt_rad < 0.5 * kTilted_rad) swimmer.goes_back = 0;
-  const bool steep = swimmer.goes_back == kRightsHimself && tilt_rad > kSteep_rad;
-  if (swimmer.goes_back == 0 || steep) return goal;
-  const WayBack& way_back = swimmer.goes_back == kRightsHimself ? kRighting : kBack;
-  const double upstream_m_s =
-      current ? drift_m_s + way_back.each_metre_1_s * std::max(off_m, 0.0) : 0.0;
-  goal.speed_m_s = std::min(way_back.speed_m_s + upstream_m_s, way_back.most_m_s);
+  const Drift drift = drift_of(state);
+  if (swimmer.goes_back == kRightsHimself) {
+    const double against_m_s =
+        is_current(drift) ? drift.m_s + kRighting.each_metre_1_s * off_m : 0.0;
+    if (tilt_rad <= kSteep_rad)
+      goal.speed_m_s = std::min(kRighting.speed_m_s + against_m_s, kRighting.most_m_s);
+  } else if (is_current(drift)) {
+    goal.speed_m_s = against_current_m_s(goal, state);
+  } else if (swimmer.goes_back == kGoesBack) {
+    goal.speed_m_s = kBack_m_s;
+  }
   return goal;
 }
 
@@ -187,6 +229,51 @@ double wanted_sink(double deeper_m, bool swims, SwimmerState& swimmer, double dt
   if (swimmer.rises > 0.0) most_rise_m_s = kMostRise_m_s * swimmer.rises;
   if (swimmer.rises < 0.0) most_sink_m_s *= -swimmer.rises;
   return std::clamp((swims ? 0.1 : 0.2) * deeper_m, -most_rise_m_s, most_sink_m_s);
+}
+
+// What the hands of a hovering diver do.
+enum class Hands { kRest, kTurn, kHold };
+
+// Hands that hold a hovering diver at the place: they push ahead or back, and turn; by turn_rad, or
+// while they hold until the place lies ahead or behind, whichever is nearer.
+void scull(const SwimGoal& goal, const HumanState& state, Hands hands, double turn_rad,
+           SwimmerState& swimmer, double dt_s) {
+  const auto [heading, pitch, roll] = attitude_of(state.root.attitude);
+  const Vec3 way = goal.target_ned_m - state.root.position_ned_m;
+  const Vec3 velocity = steady_velocity(state);
+  const double c = std::cos(heading), s = std::sin(heading);
+  const double ahead_m = c * way.x + s * way.y, aside_m = c * way.y - s * way.x;
+  if (hands == Hands::kHold)
+    turn_rad = std::abs(aside_m) > kAside_m
+                   ? std::atan2(std::copysign(aside_m, aside_m * ahead_m), std::abs(ahead_m))
+                   : 0.0;
+  const double turn =
+      std::clamp(kScullTurn * turn_rad - kScullTurning_s * state.root.velocity[5], -1.0, 1.0);
+  // Hands below the body pitch it.
+  const double level = std::clamp(1.0 - 2.0 * std::abs(pitch) / kTilted_rad, 0.0, 1.0);
+  const double most = level * (1.0 - 0.5 * std::abs(turn));
+  const double push =
+      hands == Hands::kHold
+          ? std::clamp(kScullMetre * ahead_m - kScullSpeed_s * (c * velocity.x + s * velocity.y),
+                       -most, most)
+          : 0.0;
+  const auto amplitude = [&](double share) {
+    if (hands == Hands::kRest) return 0.0;
+    const double stroke = std::clamp(share, -1.0, 1.0);
+    return std::copysign(std::sqrt(std::abs(stroke)), stroke) * kScull_rad;  // drag: its square
+  };
+  follow(swimmer.sculls, hands == Hands::kRest ? 0.0 : 1.0, kScullsLag_s, dt_s);
+  follow(swimmer.scull_left_rad, amplitude(push + turn), kSteeringLag_s, dt_s);
+  follow(swimmer.scull_right_rad, amplitude(push - turn), kSteeringLag_s, dt_s);
+  swimmer.scull_phase_rad =
+      std::fmod(swimmer.scull_phase_rad + 2.0 * kPi / kScull_s * dt_s, 2.0 * kPi);
+}
+
+// 1 to -1 in the stroke, back to 1 in the rest of a turn.
+double stroke_at(double phase_rad) {
+  const double share = phase_rad / (2.0 * kPi);
+  return share < kStroke ? std::cos(kPi * share / kStroke)
+                         : -std::cos(kPi * (share - kStroke) / (1.0 - kStroke));
 }
 
 // 1: little way, legs do not steer; 0: way enough.
@@ -227,6 +314,9 @@ void steer(double turn, double nose_up, double roll_rad, const Vec6& velocity,
   const double pitch = (2.5 + 3.5 * rests) * nose_up - (3.0 + 3.0 * rests) * pitch_rate +
                        (0.15 + 0.35 * rests) * swimmer.pitch_sum;
   follow(swimmer.lift_rad, std::clamp(-pitch, -1.0, 1.0) * kMostLift_rad, kSteeringLag_s, dt_s);
+  // The kick that rights has straight knees.
+  const double bends = swimmer.goes_back == kRightsHimself ? 0.0 : kHoverKnees * rests;
+  follow(swimmer.knees_rad, bends * std::max(-swimmer.lift_rad, 0.0), kKneesLag_s, dt_s);
   const double treads = std::clamp((std::abs(pitch) - kTreads) / (1.0 - kTreads), 0.0, 1.0);
   follow(swimmer.tread, rests * treads, kSteeringLag_s, dt_s);
   swimmer.tread_phase_rad =
@@ -259,8 +349,18 @@ JointRotations posture_for(const Body& body, const SwimmerSettings& settings,
       kTread_rad * std::sqrt(swimmer.tread) * std::sin(swimmer.tread_phase_rad);
   joints[joint_of(kLeftLowerLeg)].y += tread_rad;
   joints[joint_of(kRightLowerLeg)].y -= tread_rad;
+  for (const Segment shin : {kLeftLowerLeg, kRightLowerLeg}) {
+    joints[joint_of(shin)].y -= rests * swimmer.knees_rad;
+  }
   for (const Segment arm : {kLeftUpperArm, kRightUpperArm})
     joints[joint_of(arm)].y = kHoverArms * rests * std::max(swimmer.lift_rad, 0.0);
+  const double stroke = stroke_at(swimmer.scull_phase_rad);
+  // Forearms hang down, wherever the upper arms point.
+  const double hangs_rad = std::max(0.5 * kPi - joints[joint_of(kLeftUpperArm)].y, 0.0);
+  joints[joint_of(kLeftForearm)].y =
+      std::max(swimmer.sculls * hangs_rad + swimmer.scull_left_rad * stroke, 0.0);
+  joints[joint_of(kRightForearm)].y =
+      std::max(swimmer.sculls * hangs_rad + swimmer.scull_right_rad * stroke, 0.0);
   joints[joint_of(kHead)].z = 0.8 * swimmer.bend_rad;
   return rotations_of(joints);
 }
@@ -282,20 +382,25 @@ void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& ask
   const Vec3 velocity_ned = state.root.attitude * state.root.velocity.linear();
   const Vec3 ahead_ned = state.root.attitude * Vec3(1.0, 0.0, 0.0);
   const double ahead_m_s = glm::dot(velocity_ned - state.held.current_ned_m_s, ahead_ned);
-  const bool swims = goal.speed_m_s > settings.gliding_speed_m_s;
+  const Drift drift = drift_of(state);
+  const bool against = hovers && is_current(drift) && swimmer.goes_back != kKicksUp &&
+                       swimmer.goes_back != kRightsHimself;
+  const bool slowly = against && drift.m_s < kSlowCurrent_m_s;
+  const bool swims = against || goal.speed_m_s > settings.gliding_speed_m_s;
   const double deeper_m = goal.target_ned_m.z - state.root.position_ned_m.z;
   const double sink_m_s = wanted_sink(deeper_m, swims, swimmer, dt_s);
-  const double too_much_m_s = velocity_ned.z - sink_m_s;
+  const double too_much_m_s = steady_velocity(state).z - sink_m_s;
   swimmer.climb_sum = swims ? std::clamp(swimmer.climb_sum + too_much_m_s * dt_s, -3.0, 3.0) : 0.0;
   const double way = std::clamp(ahead_m_s / kWay_m_s, 0.0, 1.0);
   follow(swimmer.rests, 1.0 - swimmer.effort * way, 0.5, dt_s);
-  pace(body, settings, ahead_m_s, goal.speed_m_s, state.life, swimmer, dt_s);
+  pace(body, settings, ahead_m_s, goal.speed_m_s, swims, state.life, swimmer, dt_s);
   balance(body, too_much_m_s, state, swimmer, dt_s, inputs);
 
   double turn = 0.0, pitch = 0.0;
   if (swims) {
-    turn = std::remainder(wanted_heading(goal, state, attitude.heading_rad) - attitude.heading_rad,
-                          2.0 * kPi);
+    const double wanted =
+        against ? into_current(goal, state) : wanted_heading(goal, state, attitude.heading_rad);
+    turn = std::remainder(wanted - attitude.heading_rad, 2.0 * kPi);
     // Right behind: on round the same side, whichever is the nearer just now.
     if (std::abs(turn) < kBehind_rad || swimmer.turn_side == 0.0)
       swimmer.turn_side = std::copysign(1.0, turn);
@@ -306,7 +411,16 @@ void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& ask
     const double climb_m_s =
         -sink_m_s + firm * 0.3 * too_much_m_s + firm * 0.04 * swimmer.climb_sum;
     pitch = std::clamp(climb_m_s / std::max(goal.speed_m_s, 0.2), -kMostPitch_rad, kMostPitch_rad);
+    // With so little way breath holds the depth.
+    if (slowly)
+      pitch *= std::clamp((goal.speed_m_s - settings.gliding_speed_m_s) / kLevelWay_m_s, 0.0, 1.0);
   }
+  const bool level = std::abs(attitude.pitch_rad) < kTilted_rad;
+  const Hands hands = !hovers || !level                            ? Hands::kRest
+                      : !swims                                     ? Hands::kHold
+                      : slowly && std::abs(turn) > kOffHeading_rad ? Hands::kTurn
+                                                                   : Hands::kRest;
+  scull(goal, state, hands, turn, swimmer, dt_s);
   const bool fills = (inputs.buttons & kInflate) != 0;
   const bool vents = swimmer.button_s < 0.0 && swimmer.lift_sum < 0.0 && !fills;
   if (vents) pitch = std::max(pitch, kVentPitch_rad);

@@ -12,7 +12,8 @@ struct SwimGoal {
   // The swimmer rises to a place well above by less than 9 m a minute, in wide turns if it lies
   // straight above, and sinks to one well below by about 9 m a minute.
   Vec3 target_ned_m{0.0};
-  // Through the water; 0: hovers there, level, and swims back after drifting or sinking away.
+  // Through the water; 0: hovers there, level: hands and fins hold the place, in a current as far
+  // as legs last.
   double speed_m_s = 0.5;
 };
 
@@ -44,10 +45,15 @@ struct SwimmerState {
   double lift_sum = 0.0;   // litres times seconds of breath that was asked for
   double breath_bias_m3 = 0.0;
   double lift_rad = 0.0, twist_rad = 0.0, left_more = 0.0, bend_rad = 0.0;
+  double knees_rad = 0.0;                     // bent while resting: buoyant shins lie farther ahead
   double legs_aside_rad = 0.0;                // with little way: to starboard
   double stoop_rad = 0.0;                     // while hovering too steeply
   double tread = 0.0, tread_phase_rad = 0.0;  // while resting: shins beat, 0 to 1
-  double turn_side = 0.0;                     // 1: comes round to starboard, -1: to port
+  // While hovering, hands push the water aft by this amplitude, left and right, or ahead
+  // (negative).
+  double scull_left_rad = 0.0, scull_right_rad = 0.0, scull_phase_rad = 0.0;
+  double sculls = 0.0;     // forearms are down for it, 0 to 1
+  double turn_side = 0.0;  // 1: comes round to starboard, -1: to port
   // Roll and its rate without the kick's own rolling.
   BeatNotch roll, roll_rate;
   double rests = 1.0;     // 1: lies still in the water, 0: has way
@@ -73,10 +79,15 @@ struct SwimmerState {
     field("twist_rad", self.twist_rad);
     field("left_more", self.left_more);
     field("bend_rad", self.bend_rad);
+    field("knees_rad", self.knees_rad);
     field("legs_aside_rad", self.legs_aside_rad);
     field("stoop_rad", self.stoop_rad);
     field("tread", self.tread);
     field("tread_phase_rad", self.tread_phase_rad);
+    field("scull_left_rad", self.scull_left_rad);
+    field("scull_right_rad", self.scull_right_rad);
+    field("scull_phase_rad", self.scull_phase_rad);
+    field("sculls", self.sculls);
     field("turn_side", self.turn_side);
     field("roll", self.roll);
     field("roll_rate", self.roll_rate);

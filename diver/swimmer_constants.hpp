@@ -7,8 +7,12 @@
 // hovered 0.17 m off the depth, tilted by 4.4 degrees, 3.9 m off the place. "Free" says that both
 // factors stay within 0.18 m and 85 W; 69 to 73 s; 7.5 to 8.0 m a minute and 0.19 m; 0.24 m, 6
 // degrees and 5.0 m: a choice that hardly changes the results. The gains in swimmer.cpp are free
-// too, but for that of yaw: 0.7 times as large it misses the place behind by 1.6 m in 75 s. Tests
-// named here are those of tests/diver.
+// too, but for that of yaw: 0.7 times as large it misses the place behind by 1.6 m in 75 s. The
+// hover in these figures rested and swam back. Hands, knees, slow kicks and the way against a
+// current, which hold the place now, were measured at rest at 15 and 5 m and in 0.05, 0.1 and 0.2
+// m/s from the side for two minutes, three after the start: 0.03, 0.15, 0.36, 0.18 and 0.03 m off
+// the place at 2, 28, 6, 20 and 56 W; "free" there says that both factors stay within 0.8 m and
+// 40 W (56 W in 0.2 m/s). Tests named here are those of tests/diver.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +22,11 @@
 namespace neritic::diver::swimming {
 
 // Way of a beat with full gear, m, from which the pace begins: measured, and held by
-// Swimmer.ItsKickGivesWhatIsPublishedWithFinsAndBare. At 1.4 times the hover strays by 5.7 m.
+// Swimmer.ItsKickGivesWhatIsPublishedWithFinsAndBare.
 inline constexpr double kMetresABeat = 0.52;
+
+// No beat is slower; less speed has smaller ones: free.
+inline constexpr double kSlowestBeat_hz = 0.25;
 
 // Angles that steer, far inside the range of joints: hip 30 degrees back and to the inner side, 45
 // to the outer; trunk 80 forward, 25 back, 35 to a side, 45 of twist (AAOS 1965, Joint Motion).
@@ -69,9 +76,24 @@ inline constexpr double kHoverBreath = 1.5;
 // share is 0.25. Free. The arms go forward by kHoverArms times the lift; their weight lowers the
 // head. Free.
 inline constexpr double kHoverBend = 1.0, kHoverArms = 4.0;
+// Knees bend by this multiple of the legs' lift, slowly, where the head sinks: a suit lifts shins,
+// which then lie nearer to the middle. With straight knees treading fins push a diver with a full
+// tank at 5 m on by 0.07 m/s. Slow kicks with straight knees roll by 15 degrees. Free.
+inline constexpr double kHoverKnees = 5.0, kKneesLag_s = 3.0;
 // Where posture is hardly enough, the shins beat in turn: moving fins hold on to the water. All
 // free. kTreads: the share of steering up to which posture alone holds the pitch.
 inline constexpr double kTread_rad = radians(5.0), kTread_hz = 1.0, kTreads = 0.3;
+// Hands that scull: forearms hang down and swing about the elbows by kScull_rad at most, once in
+// kScull_s: a stroke takes kStroke of it, the slower way back the rest. Whole strokes move a diver
+// at 0.06 m/s for 45 W. Free.
+inline constexpr double kScull_rad = radians(35.0), kScull_s = 1.6, kStroke = 0.25,
+                        kScullsLag_s = 1.0;
+// Shares of a whole stroke for each metre off the place, each m/s, each radian off the heading and
+// each rad/s: the place is held like by a spring with a period of 50 s, damped. Free.
+inline constexpr double kScullMetre = 0.8, kScullSpeed_s = 10.0, kScullTurn = 0.8,
+                        kScullTurning_s = 5.0;
+// A place farther to a side is turned to, ahead or behind, since hands push along the body: free.
+inline constexpr double kAside_m = 0.3;
 // A hovering diver swims back from this distance, or to right himself from this tilt, and rests
 // again at kNear_m: free.
 inline constexpr double kAdrift_m = 3.0, kNear_m = 0.7, kTilted_rad = radians(20.0);
@@ -80,15 +102,26 @@ inline constexpr double kAdrift_m = 3.0, kNear_m = 0.7, kTilted_rad = radians(20
 // level while hovering.
 inline constexpr double kSteep_rad = radians(25.0), kStoop_rad = radians(17.0);
 inline constexpr double kStoopLag_s = 0.7;  // free
-// A faster drift is a current; the diver then aims this far upstream: free.
-inline constexpr double kStill_m_s = 0.06, kAimAhead_m = 4.0;
-// Speed of the way back in still water, its growth with the distance in a current, and its limit,
-// which a vehicle beside can follow (Swimmer.ComesBackNoFasterThanWhoKeepsBesideCanFollow). A body
-// that rights itself needs way. Free.
-struct WayBack {
+// A faster drift is a current: the head stays into it, kAsideMetre over the drift to a side for
+// each metre that the place lies there, less kAsideSpeed_s for each m/s towards it, at most
+// kMostCrab_rad; a drift below kLeastDrift_m_s counts as that. Free.
+inline constexpr double kStill_m_s = 0.03, kAsideMetre = 0.05, kAsideSpeed_s = 0.5;
+inline constexpr double kLeastDrift_m_s = 0.1, kMostCrab_rad = 0.5;
+// Against it the diver swims as fast as it is, and faster for each metre downstream, by kMostGain
+// at most. In one slower than kSlowCurrent_m_s legs hardly steer: hands turn a diver who is off the
+// heading by more than kOffHeading_rad, breath alone holds the depth while the legs hardly move,
+// and no kick carries on one who looks elsewhere. Free.
+inline constexpr double kGainMetre_1_s = 0.08, kMostGain_m_s = 0.25, kMostAgainst_m_s = 0.8;
+inline constexpr double kSlowCurrent_m_s = 0.15, kOffHeading_rad = 0.5;
+inline constexpr double kLevelWay_m_s = 0.04;
+// Speed of the way back in still water, which a vehicle beside can follow
+// (Swimmer.ComesBackNoFasterThanWhoKeepsBesideCanFollow). A body that rights itself needs way, in a
+// current more by the drift and for each metre off. Free.
+inline constexpr double kBack_m_s = 0.15;
+struct Righting {
   double speed_m_s, each_metre_1_s, most_m_s;
 };
-inline constexpr WayBack kBack{0.15, 0.01, 0.5}, kRighting{0.35, 0.15, 0.8};
+inline constexpr Righting kRighting{0.35, 0.15, 0.8};
 inline constexpr std::uint64_t kGoesBack = 1, kRightsHimself = 2, kKicksUp = 3;
 // Sunk so far below the place, a diver whom no jacket lifts swims up to it at this speed: free.
 inline constexpr double kSunk_m = 1.5, kKickUp_m_s = 0.5;

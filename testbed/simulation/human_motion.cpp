@@ -69,7 +69,8 @@ diver::SwimGoal swim_goal(const PhysicsHuman& human, const HumanPhysics& state) 
   if (!swims_on(human, state)) return {state.leg_from_ned_m, 0.0};
   const Vec3& to = human.waypoints_ned_m[waypoint_index(human, state)];
   if (human.speed_over == scene::SpeedOver::kWater) return {to, human.speed_m_s};
-  const Vec3 way = to - state.human.root.position_ned_m, current = state.human.held.current_ned_m_s;
+  const Vec3 way = to - state.human.root.position_ned_m;
+  const Vec3 current = diver::steady_current_ned_m_s(state.human.held);
   const double speed_m_s = through_water_m_s(human.speed_m_s, way, current);
   // One whom the current carries along still steers.
   const bool climbs = current != Vec3(0.0) && std::abs(way.z) > diver::swimming::kWellOff_m;
@@ -228,6 +229,7 @@ HumanStep free_human(const PhysicsHuman& human, const DiverInputs& inputs,
   follow_plan(human, state);
   diver::HumanInputs acting = acting_inputs(human, inputs, step, dt_s, able, state);
   acting.current_ned_m_s = water.current_m_s;
+  acting.waves_ned_m_s = water.waves_m_s;
   acting.current_change_ned_m_s2 = water.change_m_s2;
   acting.water_acceleration_ned_m_s2 = water.acceleration_m_s2;
   const diver::RootState before = state.human.root;

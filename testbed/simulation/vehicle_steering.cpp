@@ -131,7 +131,8 @@ diver::WaterFlow PhysicsWorld::water_ned(const Vec3& position_ned_m, double time
   diver::WaterFlow out(current_ned_m_s(position_ned_m, time_s));
   if (!waves_) return out;
   const WaveFlow flow = waves_->flow(rov::world_from_ned(position_ned_m), time_s);
-  out.current_m_s += rov::ned_from_world(flow.velocity_m_s);
+  out.waves_m_s = rov::ned_from_world(flow.velocity_m_s);
+  out.current_m_s += out.waves_m_s;
   out.head_m = flow.head_m;
   return out;
 }

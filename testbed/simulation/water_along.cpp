@@ -24,6 +24,7 @@ diver::WaterFlow water_along(const std::optional<sim::Current>& current,
   sim::CurrentSample water;
   double head_m = 0.0;
   if (current) water = sim::sample(*current, halfway_m, halfway_s);
+  const Vec3 steady_m_s = water.velocity_m_s;
   if (waves) {
     const WaveFlow flow = waves->flow(halfway_m, halfway_s);
     const double wet = std::clamp(1.0 - (halfway_m.y - flow.head_m) / kFades_m, 0.0, 1.0);
@@ -42,6 +43,7 @@ diver::WaterFlow water_along(const std::optional<sim::Current>& current,
   diver::WaterFlow out{rov::ned_from_world(water.velocity_m_s) - 0.5 * dt_s * change, change,
                        change_along(water.velocity_m_s)};
   out.head_m = head_m;
+  if (waves) out.waves_m_s = out.current_m_s - rov::ned_from_world(steady_m_s);
   return out;
 }
 

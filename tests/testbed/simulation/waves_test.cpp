@@ -59,6 +59,43 @@ TEST(Waves, ADiverWithAFullJacketRidesThem) {
   EXPECT_LT(rides.over_m, 0.4 * rides.moved_m);
 }
 
+// A diver who hovers goes to and fro with the water, and neither turns into each wave nor kicks or
+// trims against it, also in a rough sea.
+TEST(Waves, ADiverWhoHoversRidesThemOut) {
+  struct Case {
+    const char* rough;
+    double depth_m, off_depth_m;
+  };
+  for (const Case& c : {Case{"", 4.0, 0.8}, Case{"wind_m_s = 10\nfetch_km = 200\n", 6.0, 1.6}}) {
+    SCOPED_TRACE(c.depth_m);
+    const std::string diver =
+        diver_text(fmt::format("position_m = [0, {}, 0]\n{}", -c.depth_m, kProne));
+    TestDive dive = dive_of(*c.rough ? kStillWater + ("[water]\nsurface = true\n[water.waves]\n" +
+                                                      std::string(c.rough) + kMoves + "\n" + diver)
+                                     : sea(kMoves) + diver);
+    const auto heading_rad = [&] {
+      return diver::attitude_of(dive.state().humans()[0].human.root.attitude).heading_rad;
+    };
+    dive.run(60.0);
+    double last_rad = heading_rad(), turned_rad = 0.0, most_rad = 0.0, away_m = 0.0, off_m = 0.0,
+           effort = 0.0;
+    dive.run(60.0, [&] {
+      const HumanPhysics& state = dive.state().humans()[0];
+      const Vec3& at = state.human.root.position_ned_m;
+      turned_rad += std::remainder(heading_rad() - last_rad, 2.0 * kPi);
+      last_rad = heading_rad();
+      most_rad = std::max(most_rad, std::abs(turned_rad));
+      away_m = std::max(away_m, std::hypot(at.x, at.y));
+      off_m = std::max(off_m, std::abs(at.z - c.depth_m));
+      effort = std::max(effort, state.swimmer.effort);
+    });
+    EXPECT_LT(most_rad, radians(120.0));
+    EXPECT_LT(away_m, 3.0);
+    EXPECT_LT(off_m, c.off_depth_m);
+    EXPECT_LT(effort, 0.1);
+  }
+}
+
 // A diver's dive computer reads the pressure at its place under the waves.
 TEST(Waves, ADiveComputerReadsTheirPressure) {
   TestDive dive = dive_of(sea(kMoves) + diver_text("position_m = [0, -3, 0]\n"));
