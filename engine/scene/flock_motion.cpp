@@ -10,10 +10,18 @@ namespace {
 // Velocities are differences over this time.
 constexpr double kStep_s = 0.04;
 // A fish's pitch, at most: schools keep level.
-constexpr double kSteepest = 0.45;  // rise over run
+constexpr double kSteepest = 0.6;  // rise over run
 
-// The streams of a fish's own numbers.
+// A fish's own way about its place in the school: the share of the school's speed at which it
+// strays, and its turns a second. Few stray far: the share rises with a draw's cube.
+constexpr double kLeastStray = 0.22, kMostStray = 0.7;
+constexpr double kSlowestStray_hz = 0.08, kFastestStray_hz = 0.2;
+constexpr double kStrayUp = 0.6;       // of its height, to its breadth
+constexpr double kMostBank_rad = 0.2;  // roll
+
+// The streams of a fish's own numbers: of its place, then of its way about it.
 enum Draw : std::uint64_t { kRing, kAngle, kHeight, kPhase, kSize, kDraws };
+enum StrayDraw : std::uint64_t { kShare, kPace, kAcross, kUp, kAlong, kStrayDraws };
 
 // A swell that runs through the whole school: neighbours do nearly the same, and none keeps its
 // place for good. Wave vectors in 1 / radius; incommensurate, so that nothing repeats.
@@ -25,12 +33,12 @@ constexpr int kSwells = 4;
 
 struct School {
   const Flock& flock;
-  RandomKey key;
+  RandomKey key, stray_key;
   Swell swells[kSwells];
 };
 
 School school_of(const Flock& flock) {
-  School school{flock, {flock.seed, 0x666c6f636b, 0}, {}};
+  School school{flock, {flock.seed, 0x666c6f636b, 0}, {flock.seed, 0x7374726179, 0}, {}};
   for (std::uint64_t i = 0; i < kSwells; ++i) {
     const auto draw = [&](std::uint64_t n) {
       return random_uniform({flock.seed, 0x7377656c6c, 0}, 8 * i + n) * 2.0 - 1.0;
@@ -41,7 +49,15 @@ School school_of(const Flock& flock) {
   return school;
 }
 
-// One fish, relative to the school's middle, before it dodges.
+double draw_of(const School& school, std::uint64_t fish, StrayDraw what) {
+  return random_uniform(school.stray_key, fish * kStrayDraws + static_cast<std::uint64_t>(what));
+}
+
+double stray_rad_s(const School& school, std::uint64_t fish) {
+  return 2.0 * kPi * std::lerp(kSlowestStray_hz, kFastestStray_hz, draw_of(school, fish, kPace));
+}
+
+// One fish, relative to the school's middle, before it strays and dodges.
 Vec3 in_school(const School& school, std::uint64_t fish, double time_s) {
   const Flock& flock = school.flock;
   const auto draw = [&](Draw what) {
@@ -61,6 +77,18 @@ Vec3 in_school(const School& school, std::uint64_t fish, double time_s) {
                       swell.phase + 0.5 * draw(kPhase));
   at += 0.11 * drift;
   return at * flock.radius_m;
+}
+
+// From its place in the school.
+Vec3 stray(const School& school, std::uint64_t fish, double time_s) {
+  const auto draw = [&](StrayDraw what) { return draw_of(school, fish, what); };
+  const double pace_rad_s = stray_rad_s(school, fish);
+  const double speed_m_s =
+      school.flock.speed_m_s * std::lerp(kLeastStray, kMostStray, std::pow(draw(kShare), 3.0));
+  return speed_m_s / pace_rad_s *
+         Vec3(std::sin(pace_rad_s * time_s + 2.0 * kPi * draw(kAcross)),
+              kStrayUp * std::sin(1.17 * pace_rad_s * time_s + 2.0 * kPi * draw(kUp)),
+              std::sin(0.83 * pace_rad_s * time_s + 2.0 * kPi * draw(kAlong)));
 }
 
 // Pushed out of the way: at distance r of what it avoids it swims at r + a exp(-r / a), which rises
@@ -89,6 +117,18 @@ Instant instant_of(const MotionSource& source, std::size_t object, double time_s
   return out;
 }
 
+// In the world. Fish do not stray beside what they avoid, where they turn and hurry most.
+Vec3 place_of(const School& school, const Instant& instant, std::uint64_t fish, double time_s) {
+  const double avoid_m = school.flock.avoid_m;
+  const Vec3 at = instant.middle + in_school(school, fish, time_s);
+  double calm = 1.0;
+  for (const Vec3& from : instant.avoid) {
+    const double r = glm::distance(at, from) / (2.0 * avoid_m);
+    calm *= 1.0 - std::exp(-r * r);
+  }
+  return dodged(at + calm * stray(school, fish, time_s), instant.avoid, avoid_m);
+}
+
 }  // namespace
 
 std::vector<Mat4> flock_copies(const MotionSource& source, std::size_t object, double time_s) {
@@ -99,15 +139,17 @@ std::vector<Mat4> flock_copies(const MotionSource& source, std::size_t object, d
   const Mat4 object_from_world = glm::inverse(to_matrix(source.world_from_object(object, time_s)));
   std::vector<Mat4> out(flock.count);
   for (std::uint64_t i = 0; i < flock.count; ++i) {
-    const Vec3 at = dodged(now.middle + in_school(school, i, time_s), now.avoid, flock.avoid_m);
-    const Vec3 then =
-        dodged(soon.middle + in_school(school, i, time_s + kStep_s), soon.avoid, flock.avoid_m);
+    const Vec3 at = place_of(school, now, i, time_s);
+    const Vec3 then = place_of(school, soon, i, time_s + kStep_s);
     Vec3 way = then - at;
     const double run = std::hypot(way.x, way.z);
     way.y = std::clamp(way.y, -kSteepest * run, kSteepest * run);
     const double length = glm::length(way);
     const Vec3 back = length > 1e-12 ? way / -length : Vec3(0, 0, 1);
-    const Vec3 right = glm::normalize(glm::cross(Vec3(0, 1, 0), back));
+    const Vec3 level = glm::normalize(glm::cross(Vec3(0, 1, 0), back));
+    const double bank_rad = kMostBank_rad * std::sin(0.7 * stray_rad_s(school, i) * time_s +
+                                                     2.0 * kPi * draw_of(school, i, kAcross));
+    const Vec3 right = std::cos(bank_rad) * level + std::sin(bank_rad) * glm::cross(back, level);
     const Vec3 up = glm::cross(back, right);
     const double size =
         flock.scale * std::lerp(0.75, 1.25, random_uniform(school.key, i * kDraws + kSize));

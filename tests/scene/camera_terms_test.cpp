@@ -197,6 +197,36 @@ TEST(Flock, KeepsClearOfWhatItAvoidsAndSwimsOn) {
   EXPECT_LT(fastest, 2.5);
 }
 
+TEST(Flock, NeighboursHeadApartPitchAndBank) {
+  const test::ScratchFolder scratch;
+  const Scene scene = scene_of(scratch, kSchool);
+  const std::vector<Mat4> fish = flock_copies(MotionSource(scene), 1, 5.0);
+  double turns = 0.0, pitches = 0.0, banks = 0.0, most_deg = 0.0;
+  std::size_t pairs = 0;
+  for (std::size_t i = 0; i < fish.size(); ++i) {
+    std::size_t next = i;  // the nearest other fish
+    for (std::size_t k = 0; k < fish.size(); ++k)
+      if (k != i && (next == i || glm::length(Vec3(fish[k][3] - fish[i][3])) <
+                                      glm::length(Vec3(fish[next][3] - fish[i][3]))))
+        next = k;
+    const Vec3 ahead = -glm::normalize(Vec3(fish[i][2])),
+               other = -glm::normalize(Vec3(fish[next][2]));
+    const double turn_deg = std::abs(degrees(
+        std::atan2(ahead.x * other.z - ahead.z * other.x, ahead.x * other.x + ahead.z * other.z)));
+    turns += turn_deg;
+    most_deg = std::max(most_deg, turn_deg);
+    pitches += std::abs(degrees(std::asin(ahead.y)));
+    banks += std::abs(degrees(std::asin(glm::normalize(Vec3(fish[i][0])).y)));
+    ++pairs;
+  }
+  const double count = static_cast<double>(pairs);
+  EXPECT_GT(turns / count, 12.0);
+  EXPECT_LT(turns / count, 45.0);  // still a school
+  EXPECT_GT(most_deg, 60.0);       // and some turn off
+  EXPECT_GT(pitches / count, 6.0);
+  EXPECT_GT(banks / count, 4.0);
+}
+
 TEST(Flock, IsAFunctionOfTimeAlone) {
   const test::ScratchFolder scratch;
   const Scene scene = scene_of(scratch, kSchool);

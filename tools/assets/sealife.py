@@ -1,4 +1,4 @@
-"""Small life for instancing: kelp.glb, seagrass.glb, corals.glb (coral_0..2), fish.glb.
+"""Small life for instancing: kelp.glb, seagrass.glb, corals.glb (coral_0..2), fish.glb (clip swim).
 
 Plants stand on y = 0; a shader that sways them can take the weight from height.
 The fish is 0.25 m long, nose along -z, origin at its middle.
@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+import fish_swim
 import noise as N
 import sdf as S
 from glb import Glb
@@ -291,7 +292,7 @@ def main():
         "fin", (0.9, 0.9, 0.85, 1), base=b, rough=0.5, double=True
     )
     body, thin = fish()
-    g.node("fish", g.mesh("fish", [(body, m_b), (thin, m_f)]))
+    fish_swim.swim(g, [fish_swim.swimmer(g, "fish", [(body, m_b), (thin, m_f)], 0.25, (0, 0, 0))])
     g.save(OUT / "fish.glb")
 
 

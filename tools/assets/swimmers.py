@@ -1,10 +1,11 @@
 """Animals that swim by their bodies: turtle.glb and ray.glb (clip swim), jellyfish.glb (clip pulse); and
-school_fish.glb: sardine (for thousands), snapper and damsel. Nose along -z, origin in the middle.
+school_fish.glb: sardine (for thousands, rigid), snapper and damsel (clip swim). Nose along -z, origin in the middle.
 """
 from pathlib import Path
 
 import numpy as np
 
+import fish_swim
 import noise as N
 from glb import Glb, qmul, quat
 from mesh import box_uv, join, loft, Part, shade
@@ -410,12 +411,18 @@ def fish_picture(back, flank, belly, marks, n=64, m=128):
 def school_fish():
     g = Glb("school_fish")
 
-    def add(name, parts, picture, at, rough, m_f=None):
+    spines = []
+
+    def add(name, parts, picture, at, rough, m_f=None, length=None):
         b = g.texture(f"{name}_color", picture, 84)
         m_b = g.material(f"{name}_body", base=b, rough=rough)
         if m_f is None:
             m_f = g.material(f"{name}_fin", base=b, rough=0.6, double=True)
-        g.node(name, g.mesh(name, [(shade(parts[0], 80), m_b), (shade(join(parts[1:]), 80), m_f)]), at=at)
+        prims = [(shade(parts[0], 80), m_b), (shade(join(parts[1:]), 80), m_f)]
+        if length:
+            spines.append(fish_swim.swimmer(g, name, prims, length, at))
+        else:
+            g.node(name, g.mesh(name, prims), at=at)
 
     # 58 triangles, for thousands
     sardine = [fish_body([-0.08, -0.055, -0.015, 0.03, 0.065], [0.002, 0.013, 0.018, 0.013, 0.005], [0.001, 0.007, 0.009, 0.006, 0.002], 4),
@@ -444,7 +451,7 @@ def school_fish():
         snapper += [rays(gold, [(way * 0.021, -0.008, -0.086), (way * 0.022, -0.024, -0.082)], [(way * 0.036, -0.006, -0.030), (way * 0.046, -0.018, -0.024), (way * 0.048, -0.030, -0.030), (way * 0.040, -0.038, -0.046), (way * 0.028, -0.034, -0.066)]),
                     rays(gold, [(way * 0.008, -0.047, -0.075), (way * 0.006, -0.049, -0.055)], [(way * 0.022, -0.070, -0.052), (way * 0.020, -0.074, -0.036), (way * 0.010, -0.064, -0.028)])]
     bands = lambda col, u, v: N.mix(col, (0.16, 0.34, 0.50), 0.8 * sum(N.smooth(0.022, 0.012, np.abs(v - b)) for b in (0.26, 0.40, 0.54)) * N.smooth(0.1, 0.16, u))
-    add("snapper", snapper, fish_picture((0.52, 0.40, 0.10), (0.72, 0.56, 0.14), (0.66, 0.60, 0.46), bands), (0, 0, 0), 0.45, m_rays)
+    add("snapper", snapper, fish_picture((0.52, 0.40, 0.10), (0.72, 0.56, 0.14), (0.66, 0.60, 0.46), bands), (0, 0, 0), 0.45, m_rays, 0.32)
     zs = [-0.062, -0.057, -0.045, -0.026, -0.004, 0.018, 0.036, 0.046]
     damsel = [fish_body(zs, [0.002, 0.012, 0.024, 0.034, 0.037, 0.031, 0.017, 0.009], [0.001, 0.005, 0.009, 0.012, 0.012, 0.009, 0.005, 0.002], 8),
               rays(yellow, [(0.009, 0.040), (0.010, 0.045), (-0.010, 0.045), (-0.009, 0.040)], [(0.029, 0.069), (0.018, 0.063), (0.008, 0.058), (0.0, 0.056), (-0.008, 0.058), (-0.018, 0.063), (-0.029, 0.069)]),
@@ -454,7 +461,8 @@ def school_fish():
         damsel += [rays(blue, [(way * 0.0105, -0.001, -0.030), (way * 0.011, -0.011, -0.029)], [(way * 0.020, 0.002, -0.008), (way * 0.025, -0.006, -0.004), (way * 0.024, -0.014, -0.009), (way * 0.017, -0.017, -0.020)]),
                    rays(blue, [(way * 0.004, -0.033, -0.026), (way * 0.003, -0.035, -0.015)], [(way * 0.010, -0.052, -0.010), (way * 0.009, -0.055, 0.000), (way * 0.004, -0.044, 0.000)])]
     tail = lambda col, u, v: N.mix(col, (0.85, 0.66, 0.10), N.smooth(0.72, 0.80, u + 0.25 * (v - 0.4)))
-    add("damsel", damsel, fish_picture((0.05, 0.12, 0.36), (0.10, 0.24, 0.58), (0.20, 0.36, 0.62), tail), (0.4, 0, 0), 0.5, m_rays)
+    add("damsel", damsel, fish_picture((0.05, 0.12, 0.36), (0.10, 0.24, 0.58), (0.20, 0.36, 0.62), tail), (0.4, 0, 0), 0.5, m_rays, 0.128)
+    fish_swim.swim(g, spines)
     g.save(OUT / "school_fish.glb")
 
 
