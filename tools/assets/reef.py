@@ -1,4 +1,5 @@
-"""Reef life for instancing: reef.glb, a node a kind, each on y = 0, laid out side by side.
+"""Reef life for instancing: reef.glb, a node a kind, each on y = 0, laid out side by side. Those that stand on sand have
+a second node NAME_bed, which adds sand piled up round their foot and broken coral in it (reef_beds.py).
 
 Corals (staghorn, table, brain, fan, whip), sponges (barrel, tubes), an anemone, a starfish, an urchin,
 shells and rubble. Sizes in metres as in life. Forms after field guides; all by chance with fixed seeds.
@@ -9,6 +10,8 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 import noise as N
+import reef_beds as B
+from coarse_sand import sand
 from glb import Glb
 from mesh import box_uv, join, loft, Part, shade
 from shapes import circle, icosphere, revolve, tube
@@ -26,6 +29,22 @@ def paint(part, low, high, by, seed=1, mottle=0.18, crease=60):
     c = c * (1 - 0.35 * under)[:, None]
     p.col = np.column_stack([np.clip(c, 0, 1), np.ones(len(k))])
     return p
+
+
+def footed(part, top):
+    """Less light and a film of sand on what is lower than top (metres), where it meets the ground."""
+    y = part.pos[:, 1] + 0.5 * top * N.fbm3(part.pos, 3, 25, 2)
+    c = part.col[:, :3] * (1 - 0.5 * N.smooth(1.2 * top, 0.0, y))[:, None]
+    part.col[:, :3] = N.mix(c, (0.36, 0.32, 0.25), 0.6 * N.smooth(0.7 * top, -0.2 * top, y))
+    return part
+
+
+def holdfast(radius, height, seed):
+    """The lump of dead coral from which a colony grows."""
+    v, f = icosphere(3)
+    p = v * (1 + 0.34 * N.fbm3(v, seed, 1.6, 3))[:, None] * [radius, height, radius]
+    p[:, 1] = np.where(p[:, 1] < 0, p[:, 1] * 0.8, p[:, 1]) - 0.02
+    return Part(p, f)
 
 
 def unit(v):
@@ -64,7 +83,9 @@ def staghorn():
     ends = np.array([t for t in tips if t is not None])
     p = shade(join([q for q, _ in parts]), 100)  # round, though of few sides
     d = np.min(np.linalg.norm(p.pos[:, None, :] - ends[None], axis=2), axis=1)
-    return box_uv(paint(p, (0.46, 0.31, 0.17), (0.92, 0.80, 0.62), lambda _: N.smooth(0.075, 0.0, d) * 0.9, 11), 0.25)
+    branches = footed(paint(p, (0.46, 0.31, 0.17), (0.92, 0.80, 0.62), lambda _: N.smooth(0.075, 0.0, d) * 0.9, 11), 0.09)
+    dead = footed(paint(holdfast(0.19, 0.085, 12), (0.20, 0.17, 0.11), (0.40, 0.36, 0.27), lambda q: N.smooth(-0.02, 0.05, q[:, 1]), 12, 0.3), 0.03)
+    return box_uv(join([branches, dead]), 0.25)
 
 
 def table():
@@ -93,8 +114,9 @@ def table():
         b = np.array([r * out[0], y, r * out[2]])
         h = 0.022 + 0.022 * rng.random()
         parts.append(tube(np.array([b - [0, 0.01, 0], b + np.array([0, h, 0]) + out * 0.3 * h * s]), [0.0095, 0.0055], 4, (False, True)))
+    parts.append(holdfast(0.20, 0.10, 14))
     return box_uv(
-        paint(join(parts), (0.38, 0.30, 0.20), (0.74, 0.62, 0.42), lambda p: N.smooth(0.36, 0.42, p[:, 1]) * (0.55 + 0.45 * N.smooth(0.38, 0.52, np.hypot(p[:, 0], p[:, 2]))), 13),
+        footed(paint(join(parts), (0.38, 0.30, 0.20), (0.74, 0.62, 0.42), lambda p: N.smooth(0.36, 0.42, p[:, 1]) * (0.55 + 0.45 * N.smooth(0.38, 0.52, np.hypot(p[:, 0], p[:, 2]))), 13), 0.08),
         0.25,
     )
 
@@ -120,7 +142,7 @@ def brain():
     p = v * r[:, None] * np.array([0.34, 0.26, 0.32])
     p[:, 1] = np.where(p[:, 1] < 0, p[:, 1] * 0.5, p[:, 1]) + 0.07
     part = paint(Part(p, f), (0.50, 0.45, 0.28), (0.80, 0.72, 0.46), lambda q: N.smooth(-0.05, 0.25, q[:, 1]), 17)
-    return box_uv(part, 0.22)
+    return box_uv(footed(part, 0.06), 0.22)
 
 
 def fan_texture(n=512):
@@ -203,7 +225,8 @@ def barrel_sponge():
         rings.append(np.column_stack([rr * np.cos(ang), np.full(n, y), rr * np.sin(ang)]))
     part = loft(rings, (True, True))
     dark = lambda p: np.where((np.hypot(p[:, 0], p[:, 2]) < 0.245) & (p[:, 1] > 0.2), 0.0, N.smooth(-0.1, 0.5, p[:, 1]))
-    return box_uv(paint(part, (0.10, 0.045, 0.036), (0.40, 0.20, 0.15), dark, 23, 0.40, 50), 0.3)
+    part = paint(part, (0.10, 0.045, 0.036), (0.40, 0.20, 0.15), dark, 23, 0.40, 50)
+    return box_uv(footed(part, 0.09), 0.3)
 
 
 def tube_sponges():
@@ -222,7 +245,8 @@ def tube_sponges():
             rr = r * q * (1 + 0.10 * N.fbm3(c, 33, 1.5, 2))
             rings.append(np.column_stack([rr * np.cos(ang), np.full(n, y * h), rr * np.sin(ang)]) + lean * y)
         parts.append(loft(rings, (True, True)).at(s * 1.6 * np.cos(a), -0.03, s * 1.6 * np.sin(a)))
-    return box_uv(paint(join(parts), (0.52, 0.36, 0.06), (0.96, 0.78, 0.22), lambda p: N.smooth(-0.05, 0.4, p[:, 1]), 35), 0.25)
+    parts.append(holdfast(0.25, 0.09, 36))  # the mat from which the tubes rise
+    return box_uv(footed(paint(join(parts), (0.52, 0.36, 0.06), (0.96, 0.78, 0.22), lambda p: N.smooth(-0.05, 0.4, p[:, 1]), 35), 0.06), 0.25)
 
 
 def anemone():
@@ -318,31 +342,18 @@ def shells():
 
 
 def rubble():
-    """Broken coral and stones as they lie: within 0.55 m, half of them sunk in."""
+    """Broken coral and stones as they lie: within 0.55 m, a third to two thirds of each sunk in."""
     rng = np.random.default_rng(70)
     parts = []
     for k in range(46):
         r, a = 0.55 * rng.random() ** 0.7, rng.random() * 2 * np.pi
-        at = np.array([r * np.cos(a), 0, r * np.sin(a)])
-        if k % 3:  # a stone
-            v, f = icosphere(2 if k % 9 == 1 else 1)
+        if k % 3:
             size = 0.012 + 0.055 * rng.random() ** 2.6
-            s = v * (1 + 0.28 * N.fbm3(v, 80 + k, 1.4, 2))[:, None] * size * np.array([1.2, 0.62, 0.9])
-            part = Part(s, f).rot("y", rng.random() * 360).rot("x", rng.normal(0, 18))
-            tone = 0.34 + 0.34 * rng.random()
-            low, high = (tone * 0.75, tone * 0.72, tone * 0.62), (tone * 1.1, tone * 1.06, tone * 0.96)
-            part = paint(part, low, high, lambda p: 0.5 + N.fbm3(p, 5 + k, 30, 2), 90 + k, 0.14, 50)
-            parts.append(part.at(*(at + [0, 0.12 * size, 0])))
-        else:  # a stick of coral
-            ln = 0.05 + 0.09 * rng.random()
-            d = unit([np.cos(a * 3.7), 0.12 * rng.normal(), np.sin(a * 3.7)])
-            q = np.linspace(-0.5, 0.5, 5)[:, None]
+            parts.append(B.stone(size, k, rng, k % 9 == 1).at(r * np.cos(a), size * (0.12 - 0.30 * rng.random()), r * np.sin(a)))
+        else:
             rad = 0.007 + 0.005 * rng.random()
-            p = at + d * ln * q + np.array([0, rad * 0.5, 0]) + 0.012 * np.sin(q * 5 + k) * np.array([d[2], 0, -d[0]])
-            part = tube(p, rad * np.array([0.7, 1, 1.1, 0.95, 0.6]), 6)
-            tone = 0.62 + 0.26 * rng.random()
-            parts.append(paint(part, (tone * 0.8, tone * 0.77, tone * 0.66), (tone, tone * 0.97, tone * 0.9), lambda p: 0.5 + N.fbm3(p, 9, 40, 2), 95 + k, 0.12))
-    return box_uv(join(parts), 0.25)
+            parts.append(B.stick(0.05 + 0.09 * rng.random(), rad, k, rng).at(r * np.cos(a), rad * (0.4 - 0.8 * rng.random()), r * np.sin(a)))
+    return join(parts)
 
 
 def polyps(n=256):
@@ -369,8 +380,20 @@ def main():
         ("anemone", anemone, coral), ("starfish", starfish, coral), ("urchin", urchin, coral),
         ("shells", shells, shell_m), ("rubble", rubble, coral),
     ]
+    color = sand()[0]
+    sand_m = g.material("sand", B.SAND, base=g.texture("sand_color", color[: len(color) // 4, : len(color) // 4], 76), rough=0.95)
+    # The foot's radius, how far the sand reaches, how high it lies, and how many stones are in it.
+    beds = {"staghorn": (0.21, 0.46, 0.115, 26), "table": (0.19, 0.42, 0.11, 20), "brain": (0.33, 0.60, 0.105, 24),
+            "anemone": (0.14, 0.30, 0.07, 16), "tube_sponges": (0.27, 0.56, 0.13, 27)}
     for k, (name, make, material) in enumerate(kinds):
-        g.node(name, g.mesh(name, [(make(), material)]), at=(1.25 * (k % 6 - 2.5), 0, 1.4 * (k // 6 - 0.5)))
+        mesh, at = g.mesh(name, [(make(), material)]), (1.25 * (k % 6 - 2.5), 0, 1.4 * (k // 6 - 0.5))
+        g.node(name, mesh, at=at)
+        if name in beds:
+            foot, reach, height, count = beds[name]
+            bed = [(B.sand(reach, height, foot, 100 + k), sand_m), (join(B.stones(count, foot, reach, height, 100 + k)), coral)]
+            both = g.node(f"{name}_bed", at=(at[0], 0, at[2] + 2.8))
+            g.node(f"{name}_of_bed", mesh, parent=both)
+            g.node(f"{name}_sand", g.mesh(f"{name}_sand", bed), parent=both)
     g.save(OUT / "reef.glb")
 
 
