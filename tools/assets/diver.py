@@ -79,7 +79,7 @@ def make(look):
     c, mr, n = T.suit(look)
     m_suit = g.material(
         "wetsuit",
-        base=g.texture("suit_color", c, 88),
+        base=g.texture("suit_color", c, 80),
         mr=g.texture("suit_mr", mr, 80),
         normal=g.texture("suit_normal", n, 78),
         metal=1.0,
@@ -87,13 +87,13 @@ def make(look):
     )
     cc, cn = T.cloth()
     m_cloth = g.material(
-        "cloth", base=g.texture("cloth_color", cc, 80), normal=g.texture("cloth_normal", cn, 78), rough=0.85
+        "cloth", base=g.texture("cloth_color", cc, 80), normal=g.texture("cloth_normal", cn, 70), rough=0.85
     )
     rc, rmr, rn = T.rubber()
     m_rub = g.material(
         "rubber",
-        base=g.texture("rubber_color", rc, 85),
-        mr=g.texture("rubber_mr", rmr, 80),
+        base=g.texture("rubber_color", rc, 70),
+        mr=g.texture("rubber_mr", rmr, 66),
         normal=g.texture("rubber_normal", rn, 64),
         metal=1.0,
         rough=1.0,
@@ -101,6 +101,8 @@ def make(look):
     m_met = g.material("metal", (0.80, 0.81, 0.83, 1), metal=1.0, rough=0.28)
     m_glass = g.material("glass", (0.10, 0.14, 0.16, 0.25), metal=0.0, rough=0.05, blend=True)
     parts = gear(look)
+    for part in parts["rubber"]:
+        part.col[:, :3] = np.minimum(part.col[:, :3] * T.RUBBER_GAIN, 1)
     mesh = g.mesh(
         "diver",
         [

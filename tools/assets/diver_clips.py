@@ -110,14 +110,16 @@ def cruise(ph):
 
 
 def frog(ph):
-    """A frog kick from trim: knees bent by 90 degrees with level fins, out, together, a glide; the hands meet ahead."""
-    at = ph / (2 * np.pi)
-    on = lambda *keys: curve(at, keys)
-    hip = on((0.0, 12), (0.16, 6), (0.32, -3), (0.45, -7), (0.68, -7), (0.86, 4))
-    spread = on((0.0, 11), (0.16, 25), (0.32, 13), (0.43, 2), (0.68, 2), (0.86, 6))
-    toe_out = on((0.0, 36), (0.16, 52), (0.32, 20), (0.43, 3), (0.68, 2), (0.86, 10))
-    knee = on((0.0, -97), (0.16, -66), (0.32, -26), (0.43, -13), (0.68, -16), (0.86, -72))
-    ankle = on((0.0, 4), (0.16, 0), (0.32, -34), (0.43, -60), (0.68, -58), (0.86, -26))
+    """A frog kick from trim: knees bent by 90 degrees with level fins, out, together, a short glide on legs that never
+    quite stretch; the hands meet ahead. The left leg is a little late and bends less: nobody kicks alike on both sides.
+    """
+    late = lambda s: 0.018 if s == "l" else 0.0
+    on = lambda s, *keys: curve((ph / (2 * np.pi) - late(s)) % 1.0, keys)
+    hip = lambda s: on(s, (0.0, 12), (0.16, 6), (0.32, -3), (0.45, -5), (0.58, -3), (0.72, 6), (0.86, 11))
+    spread = lambda s: on(s, (0.0, 12), (0.16, 25), (0.32, 13), (0.43, 3), (0.60, 3), (0.80, 8))
+    toe_out = lambda s: on(s, (0.0, 36), (0.16, 52), (0.32, 20), (0.43, 5), (0.60, 6), (0.80, 20))
+    knee = lambda s: on(s, (0.0, -97), (0.16, -68), (0.32, -36), (0.43, -27), (0.56, -34), (0.74, -84))
+    ankle = lambda s: on(s, (0.0, 4), (0.16, 0), (0.32, -30), (0.43, -52), (0.58, -46), (0.76, -8))
     out = {
         "thorax": x(7 + 1.5 * np.sin(ph)),
         "abdomen": x(3 + 1.0 * np.sin(ph + 0.5)),
@@ -125,9 +127,10 @@ def frog(ph):
     }
     sway = 0.04 * np.sin(ph + 0.9)
     for s, sign in (("r", 1), ("l", -1)):
-        out[f"upper_leg_{s}"] = qmul(z(sign * spread), x(hip))
-        out[f"lower_leg_{s}"] = qmul(x(knee), y(-sign * 0.35 * toe_out))
-        out[f"foot_{s}"] = qmul(y(-sign * 0.65 * toe_out), x(ankle))
+        bent = 1.0 if s == "r" else 0.92
+        out[f"upper_leg_{s}"] = qmul(z(sign * spread(s)), x(hip(s)))
+        out[f"lower_leg_{s}"] = qmul(x(bent * knee(s)), y(-sign * 0.35 * toe_out(s)))
+        out[f"foot_{s}"] = qmul(y(-sign * 0.65 * toe_out(s)), x(ankle(s)))
         upper = np.stack([0.44 + 0 * ph, 0.14 + sway, -0.89 + 0 * ph], 1)
         fore = np.stack([-0.66 + 0 * ph, 0.70 + 0.5 * sway, -0.20 + 0 * ph], 1)
         out[f"upper_arm_{s}"], out[f"forearm_{s}"] = reach(s, upper, fore)
