@@ -5,8 +5,11 @@ namespace {
 
 bool moves(const scene::Scene& scene, const scene::Object& object) {
   if (object.dynamics || object.human || !object.inputs.empty() || object.mount.track ||
-      object.mount.afloat || object.clip >= 0)
+      object.mount.afloat)
     return true;
+  // The fish of a mill swim, but the mill stays where it is.
+  const bool mills = object.flock && object.flock->mill;
+  if (object.clip >= 0 && !mills) return true;
   return object.mount.object >= 0 &&
          moves(scene, scene.objects[static_cast<std::size_t>(object.mount.object)]);
 }

@@ -1,6 +1,6 @@
 // Everything that moves or watches in a scene, by name: vehicles, divers, objects with a track, a
-// clip or inputs (or carried by one that moves), cameras, sonars; and where each is at a time. Pure
-// functions; any thread.
+// clip or inputs (or carried by one that moves), cameras, sonars; and where each is at a time. A
+// school that mills round its place is none. Pure functions; any thread.
 #pragma once
 
 #include <string>
