@@ -383,8 +383,8 @@ def main():
     color = sand()[0]
     sand_m = g.material("sand", B.SAND, base=g.texture("sand_color", color[: len(color) // 4, : len(color) // 4], 76), rough=0.95)
     # The foot's radius, how far the sand reaches, how high it lies, and how many stones are in it.
-    beds = {"staghorn": (0.21, 0.46, 0.115, 26), "table": (0.19, 0.42, 0.11, 20), "brain": (0.33, 0.60, 0.105, 24),
-            "anemone": (0.14, 0.30, 0.07, 16), "tube_sponges": (0.27, 0.56, 0.13, 27)}
+    beds = {"staghorn": (0.21, 0.46, 0.115, 16), "table": (0.19, 0.42, 0.11, 12), "brain": (0.33, 0.60, 0.105, 15),
+            "anemone": (0.14, 0.30, 0.07, 9), "tube_sponges": (0.27, 0.56, 0.13, 17)}
     for k, (name, make, material) in enumerate(kinds):
         mesh, at = g.mesh(name, [(make(), material)]), (1.25 * (k % 6 - 2.5), 0, 1.4 * (k // 6 - 0.5))
         g.node(name, mesh, at=at)

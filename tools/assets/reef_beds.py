@@ -24,7 +24,7 @@ def pile(x, z, reach, height, seed):
 
 def sand(reach, height, foot, seed):
     """The pile; darker within the foot's radius, where less light comes."""
-    n, m = 34, 13
+    n, m = 24, 9
     turn, s = np.meshgrid(np.arange(n) / n * 2 * np.pi, np.linspace(0.03, 1.1, m) * reach, indexing="xy")
     x, z = (s * np.cos(turn)).ravel(), (s * np.sin(turn)).ravel()
     pos = np.column_stack([x, pile(x, z, reach, height, seed), z])
