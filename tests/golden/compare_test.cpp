@@ -53,7 +53,7 @@ TEST(GoldenCompare, AnImageShiftedByHalfALevelFails) {
   EXPECT_THAT(faults(brighter, golden), ElementsAre(HasSubstr("channel 1 differs by +0.5")));
 }
 
-// A fish of 11 by 4 pixels at the top of the shoal, painted over with the water beside it.
+// A fish of 7 by 4 pixels at the side of the shoal, painted over with the water beside it.
 TEST(GoldenCompare, AnImageWithASmallFishPaintedOutFails) {
   const ImageU8 golden = wreck();
   ImageU8 without = golden;
