@@ -1,5 +1,6 @@
 #include "engine/scene/flock_motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/core/random.hpp"
@@ -49,46 +50,59 @@ School school_of(const Flock& flock) {
   return school;
 }
 
-double draw_of(const School& school, std::uint64_t fish, StrayDraw what) {
-  return random_uniform(school.stray_key, fish * kStrayDraws + static_cast<std::uint64_t>(what));
-}
+// One fish's own numbers, the same at all times.
+struct Fish {
+  double ring, angle_rad, height, phase_rad, size;  // of its place in the school
+  double stray_m_s, pace_rad_s, across_rad, up_rad, along_rad;
+};
 
-double stray_rad_s(const School& school, std::uint64_t fish) {
-  return 2.0 * kPi * std::lerp(kSlowestStray_hz, kFastestStray_hz, draw_of(school, fish, kPace));
-}
-
-// One fish, relative to the school's middle, before it strays and dodges.
-Vec3 in_school(const School& school, std::uint64_t fish, double time_s) {
+Fish fish_of(const School& school, std::uint64_t index) {
   const Flock& flock = school.flock;
   const auto draw = [&](Draw what) {
-    return random_uniform(school.key, fish * kDraws + static_cast<std::uint64_t>(what));
+    return random_uniform(school.key, index * kDraws + static_cast<std::uint64_t>(what));
   };
+  const auto stray = [&](StrayDraw what) {
+    return random_uniform(school.stray_key, index * kStrayDraws + static_cast<std::uint64_t>(what));
+  };
+  Fish fish;
   // A disc that thins out to its rim; a mill is hollow in its middle.
-  const double ring = std::sqrt(std::lerp(flock.mill ? 0.12 : 0.0, 1.0, draw(kRing)));
-  double angle = 2.0 * kPi * draw(kAngle);
-  const double height = (2.0 * draw(kHeight) - 1.0) * std::sqrt(1.0 - 0.8 * ring * ring);
+  fish.ring = std::sqrt(std::lerp(flock.mill ? 0.12 : 0.0, 1.0, draw(kRing)));
+  fish.angle_rad = 2.0 * kPi * draw(kAngle);
+  fish.height = (2.0 * draw(kHeight) - 1.0) * std::sqrt(1.0 - 0.8 * fish.ring * fish.ring);
+  fish.phase_rad = 0.5 * draw(kPhase);
+  fish.size = flock.scale * std::lerp(0.75, 1.25, draw(kSize));
+  fish.stray_m_s =
+      flock.speed_m_s * std::lerp(kLeastStray, kMostStray, std::pow(stray(kShare), 3.0));
+  fish.pace_rad_s = 2.0 * kPi * std::lerp(kSlowestStray_hz, kFastestStray_hz, stray(kPace));
+  fish.across_rad = 2.0 * kPi * stray(kAcross);
+  fish.up_rad = 2.0 * kPi * stray(kUp);
+  fish.along_rad = 2.0 * kPi * stray(kAlong);
+  return fish;
+}
+
+// Relative to the school's middle, before the fish strays and dodges.
+Vec3 in_school(const School& school, const Fish& fish, double time_s) {
+  const Flock& flock = school.flock;
+  double angle = fish.angle_rad;
   if (flock.mill)  // every fish at the same speed, so inner ones get round sooner
-    angle += flock.speed_m_s * time_s / (ring * 0.5 * (flock.radius_m.x + flock.radius_m.z));
-  Vec3 at(ring * std::cos(angle), height, ring * std::sin(angle));
+    angle += flock.speed_m_s * time_s / (fish.ring * 0.5 * (flock.radius_m.x + flock.radius_m.z));
+  Vec3 at(fish.ring * std::cos(angle), fish.height, fish.ring * std::sin(angle));
   Vec3 drift(0.0);
   for (const Swell& swell : school.swells)
     drift += swell.direction *
              std::sin(glm::dot(swell.wave, at) + 2.0 * kPi * swell.turns_s * 0.3 * time_s +
-                      swell.phase + 0.5 * draw(kPhase));
+                      swell.phase + fish.phase_rad);
   at += 0.11 * drift;
   return at * flock.radius_m;
 }
 
 // From its place in the school.
-Vec3 stray(const School& school, std::uint64_t fish, double time_s) {
-  const auto draw = [&](StrayDraw what) { return draw_of(school, fish, what); };
-  const double pace_rad_s = stray_rad_s(school, fish);
-  const double speed_m_s =
-      school.flock.speed_m_s * std::lerp(kLeastStray, kMostStray, std::pow(draw(kShare), 3.0));
-  return speed_m_s / pace_rad_s *
-         Vec3(std::sin(pace_rad_s * time_s + 2.0 * kPi * draw(kAcross)),
-              kStrayUp * std::sin(1.17 * pace_rad_s * time_s + 2.0 * kPi * draw(kUp)),
-              std::sin(0.83 * pace_rad_s * time_s + 2.0 * kPi * draw(kAlong)));
+Vec3 stray(const Fish& fish, double time_s) {
+  const double turned_rad = fish.pace_rad_s * time_s;
+  return fish.stray_m_s / fish.pace_rad_s *
+         Vec3(std::sin(turned_rad + fish.across_rad),
+              kStrayUp * std::sin(1.17 * turned_rad + fish.up_rad),
+              std::sin(0.83 * turned_rad + fish.along_rad));
 }
 
 // Pushed out of the way: at distance r of what it avoids it swims at r + a exp(-r / a), which rises
@@ -118,7 +132,7 @@ Instant instant_of(const MotionSource& source, std::size_t object, double time_s
 }
 
 // In the world. Fish do not stray beside what they avoid, where they turn and hurry most.
-Vec3 place_of(const School& school, const Instant& instant, std::uint64_t fish, double time_s) {
+Vec3 place_of(const School& school, const Instant& instant, const Fish& fish, double time_s) {
   const double avoid_m = school.flock.avoid_m;
   const Vec3 at = instant.middle + in_school(school, fish, time_s);
   double calm = 1.0;
@@ -126,7 +140,7 @@ Vec3 place_of(const School& school, const Instant& instant, std::uint64_t fish, 
     const double r = glm::distance(at, from) / (2.0 * avoid_m);
     calm *= 1.0 - std::exp(-r * r);
   }
-  return dodged(at + calm * stray(school, fish, time_s), instant.avoid, avoid_m);
+  return dodged(at + calm * stray(fish, time_s), instant.avoid, avoid_m);
 }
 
 }  // namespace
@@ -139,22 +153,21 @@ std::vector<Mat4> flock_copies(const MotionSource& source, std::size_t object, d
   const Mat4 object_from_world = glm::inverse(to_matrix(source.world_from_object(object, time_s)));
   std::vector<Mat4> out(flock.count);
   for (std::uint64_t i = 0; i < flock.count; ++i) {
-    const Vec3 at = place_of(school, now, i, time_s);
-    const Vec3 then = place_of(school, soon, i, time_s + kStep_s);
+    const Fish fish = fish_of(school, i);
+    const Vec3 at = place_of(school, now, fish, time_s);
+    const Vec3 then = place_of(school, soon, fish, time_s + kStep_s);
     Vec3 way = then - at;
     const double run = std::hypot(way.x, way.z);
     way.y = std::clamp(way.y, -kSteepest * run, kSteepest * run);
     const double length = glm::length(way);
     const Vec3 back = length > 1e-12 ? way / -length : Vec3(0, 0, 1);
     const Vec3 level = glm::normalize(glm::cross(Vec3(0, 1, 0), back));
-    const double bank_rad = kMostBank_rad * std::sin(0.7 * stray_rad_s(school, i) * time_s +
-                                                     2.0 * kPi * draw_of(school, i, kAcross));
+    const double bank_rad =
+        kMostBank_rad * std::sin(0.7 * fish.pace_rad_s * time_s + fish.across_rad);
     const Vec3 right = std::cos(bank_rad) * level + std::sin(bank_rad) * glm::cross(back, level);
     const Vec3 up = glm::cross(back, right);
-    const double size =
-        flock.scale * std::lerp(0.75, 1.25, random_uniform(school.key, i * kDraws + kSize));
-    out[i] = object_from_world * Mat4(Vec4(right * size, 0.0), Vec4(up * size, 0.0),
-                                      Vec4(back * size, 0.0), Vec4(at, 1.0));
+    out[i] = object_from_world * Mat4(Vec4(right * fish.size, 0.0), Vec4(up * fish.size, 0.0),
+                                      Vec4(back * fish.size, 0.0), Vec4(at, 1.0));
   }
   return out;
 }
