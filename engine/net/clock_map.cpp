@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -21,6 +23,18 @@ constexpr TimeNs kSparse_ns = 250'000'000, kSparseBucket_ns = 5 * ClockMap::kBuc
 // time. A packet counts if this share of those near it agrees: of many a few agree by chance.
 constexpr double kAgree_ns = 250'000.0, kAgreeDrift = 20e-6, kAgreeing = 0.03;
 constexpr std::size_t kNearBuckets = 4;
+
+// A device may say any time, so sums and differences of times wrap around instead of overflowing.
+// What they give is exact where the result fits.
+TimeNs plus(TimeNs a, TimeNs b) {
+  return static_cast<TimeNs>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+}
+TimeNs difference(TimeNs a, TimeNs b) {
+  return static_cast<TimeNs>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
+}
+double apart(TimeNs a, TimeNs b) {
+  return static_cast<double>(difference(a, b));
+}
 
 }  // namespace
 
@@ -42,8 +56,10 @@ void ClockMap::note_way(TimeNs way_ns, TimeNs) {
 ClockMap::Verdict ClockMap::judge(TimeNs late_ns, TimeNs sent_ns, TimeNs arrived_ns) {
   if (late_ns < -kEarly_ns) {
     if (!early_.empty()) {
-      const TimeNs before_ns = early_.back().arrived_ns - early_.back().sent_ns;
-      if (std::abs(arrived_ns - sent_ns - before_ns) > kEarly_ns) early_.clear();
+      const Packet& before = early_.back();
+      const double longer_ns =
+          apart(difference(arrived_ns, sent_ns), difference(before.arrived_ns, before.sent_ns));
+      if (std::abs(longer_ns) > static_cast<double>(kEarly_ns)) early_.clear();
     }
     early_.push_back({sent_ns, arrived_ns});
     return early_.size() < kEarlyPackets ? Verdict::kDoubtful : Verdict::kJumped;
@@ -54,12 +70,13 @@ ClockMap::Verdict ClockMap::judge(TimeNs late_ns, TimeNs sent_ns, TimeNs arrived
     return Verdict::kGood;
   }
   if (!std::exchange(late_, true)) late_since_ns_ = arrived_ns;
-  return arrived_ns - late_since_ns_ < kLateFor_ns ? Verdict::kDoubtful : Verdict::kJumped;
+  return difference(arrived_ns, late_since_ns_) < kLateFor_ns ? Verdict::kDoubtful
+                                                              : Verdict::kJumped;
 }
 
 void ClockMap::add(TimeNs sent_ns, TimeNs arrived_ns) {
   if (!buckets_.empty()) {
-    const Verdict verdict = judge(arrived_ns - to_host(sent_ns), sent_ns, arrived_ns);
+    const Verdict verdict = judge(difference(arrived_ns, to_host(sent_ns)), sent_ns, arrived_ns);
     if (verdict == Verdict::kDoubtful) return;
     if (verdict == Verdict::kJumped) {
       const std::vector<Packet> early = std::move(early_);
@@ -83,8 +100,8 @@ bool ClockMap::Bucket::add(const Point& point) {
 }
 
 void ClockMap::keep(TimeNs sent_ns, TimeNs arrived_ns) {
-  const Point point{sent_ns, arrived_ns - sent_ns};
-  const bool gap = !buckets_.empty() && sent_ns - newest_sent_ns_ > kSparse_ns;
+  const Point point{sent_ns, difference(arrived_ns, sent_ns)};
+  const bool gap = !buckets_.empty() && difference(sent_ns, newest_sent_ns_) > kSparse_ns;
   const bool sparse = std::exchange(after_gap_, gap) && gap;
   const TimeNs bucket_ns = sparse ? kSparseBucket_ns : kBucket_ns;
   newest_sent_ns_ = buckets_.empty() ? sent_ns : std::max(newest_sent_ns_, sent_ns);
@@ -102,7 +119,7 @@ void ClockMap::keep(TimeNs sent_ns, TimeNs arrived_ns) {
     choose_points(place);
     fit();
   }
-  note_way(arrived_ns - to_host(sent_ns), arrived_ns);
+  note_way(difference(arrived_ns, to_host(sent_ns)), arrived_ns);
 }
 
 // Whether enough of the quickest packets near this one took as long as it did. A device that sends
@@ -116,8 +133,8 @@ bool ClockMap::agreed(std::size_t bucket, std::size_t place) const {
     for (std::size_t i = 0; i < buckets_[b].count; ++i) {
       if (b == bucket && i == place) continue;
       const Point& other = buckets_[b].quick[i];
-      const auto apart_ns = static_cast<double>(other.sent_ns - point.sent_ns);
-      const double longer_ns = static_cast<double>(other.way_ns - point.way_ns) - slope_ * apart_ns;
+      const double apart_ns = apart(other.sent_ns, point.sent_ns);
+      const double longer_ns = apart(other.way_ns, point.way_ns) - slope_ * apart_ns;
       ++others;
       agree += std::abs(longer_ns) <= kAgree_ns + kAgreeDrift * std::abs(apart_ns) ? 1 : 0;
     }
@@ -149,7 +166,7 @@ void ClockMap::fit() {
   base_sent_ns_ = lowest->sent_ns;
   base_offset_ns_ = lowest->way_ns;
   slope_ = 0.0;
-  if (lowest_.back().sent_ns - lowest_.front().sent_ns < kDriftAfter_ns) return;
+  if (difference(lowest_.back().sent_ns, lowest_.front().sent_ns) < kDriftAfter_ns) return;
   const TimeNs from_ns = lowest_.front().sent_ns, level_ns = base_offset_ns_;
   struct Corner {
     double t, way;
@@ -157,8 +174,7 @@ void ClockMap::fit() {
   std::vector<Corner> hull;
   double mean = 0.0;
   for (const Point& point : lowest_) {
-    const Corner c{static_cast<double>(point.sent_ns - from_ns),
-                   static_cast<double>(point.way_ns - level_ns)};
+    const Corner c{apart(point.sent_ns, from_ns), apart(point.way_ns, level_ns)};
     mean += c.t / static_cast<double>(lowest_.size());
     const auto above = [&](const Corner& a, const Corner& b) {
       return (b.way - a.way) * (c.t - a.t) >= (c.way - a.way) * (b.t - a.t);
@@ -174,8 +190,7 @@ void ClockMap::fit() {
   for (const double share : kShares) sum += slope_across(share, edge);
   slope_ = std::clamp(sum / static_cast<double>(std::size(kShares)), -kMostDrift, kMostDrift);
   const auto under = [&](const Point& point) {
-    return static_cast<double>(point.way_ns - level_ns) -
-           slope_ * static_cast<double>(point.sent_ns - from_ns);
+    return apart(point.way_ns, level_ns) - slope_ * apart(point.sent_ns, from_ns);
   };
   const auto touched = std::ranges::min_element(lowest_, {}, under);
   base_sent_ns_ = touched->sent_ns;
@@ -186,20 +201,18 @@ void ClockMap::fit() {
 // which they are depends on the slope itself, that of the edge to begin with.
 double ClockMap::slope_across(double share, double slope) const {
   const TimeNs from_ns = lowest_.front().sent_ns, to_ns = lowest_.back().sent_ns;
-  const auto part_ns = static_cast<TimeNs>(share * static_cast<double>(to_ns - from_ns));
+  const auto part_ns = static_cast<TimeNs>(share * apart(to_ns, from_ns));
   for (int i = 0; i < 4; ++i) {
     const Point *first = &lowest_.front(), *last = &lowest_.back();
     const auto quicker = [&](const Point& one, const Point& other) {
-      return static_cast<double>(one.way_ns - other.way_ns) <
-             slope * static_cast<double>(one.sent_ns - other.sent_ns);
+      return apart(one.way_ns, other.way_ns) < slope * apart(one.sent_ns, other.sent_ns);
     };
     for (const Point& point : lowest_) {
-      if (point.sent_ns <= from_ns + part_ns && quicker(point, *first)) first = &point;
-      if (point.sent_ns >= to_ns - part_ns && quicker(point, *last)) last = &point;
+      if (point.sent_ns <= plus(from_ns, part_ns) && quicker(point, *first)) first = &point;
+      if (point.sent_ns >= difference(to_ns, part_ns) && quicker(point, *last)) last = &point;
     }
     if (last->sent_ns <= first->sent_ns) return slope;
-    const double next = static_cast<double>(last->way_ns - first->way_ns) /
-                        static_cast<double>(last->sent_ns - first->sent_ns);
+    const double next = apart(last->way_ns, first->way_ns) / apart(last->sent_ns, first->sent_ns);
     if (next == slope) break;
     slope = next;
   }
@@ -208,14 +221,15 @@ double ClockMap::slope_across(double share, double slope) const {
 
 void ClockMap::add_exchange(TimeNs t0_ns, TimeNs t1_ns, TimeNs t2_ns, TimeNs t3_ns) {
   add(t2_ns, t3_ns);
-  const TimeNs round_ns = (t3_ns - t0_ns) - (t2_ns - t1_ns);
+  const TimeNs round_ns = difference(difference(t3_ns, t0_ns), difference(t2_ns, t1_ns));
   if (round_ns < 0) return;
   // A good exchange counts for a minute.
-  if (two_way_ && round_ns > best_round_ns_ && t3_ns - round_at_ns_ < 60 * kBucket_ns) return;
+  if (two_way_ && round_ns > best_round_ns_ && difference(t3_ns, round_at_ns_) < 60 * kBucket_ns)
+    return;
   // Host minus device; by the line, the way back would take no time.
-  const TimeNs offset_ns = ((t0_ns - t1_ns) + (t3_ns - t2_ns)) / 2;
-  const TimeNs by_line_ns = to_host(t2_ns) - shift_ns_ - t2_ns;
-  shift_ns_ = offset_ns - by_line_ns;
+  const TimeNs offset_ns = std::midpoint(difference(t0_ns, t1_ns), difference(t3_ns, t2_ns));
+  const TimeNs by_line_ns = difference(difference(to_host(t2_ns), shift_ns_), t2_ns);
+  shift_ns_ = difference(offset_ns, by_line_ns);
   two_way_ = true;
   best_round_ns_ = round_ns;
   round_at_ns_ = t3_ns;
@@ -223,15 +237,15 @@ void ClockMap::add_exchange(TimeNs t0_ns, TimeNs t1_ns, TimeNs t2_ns, TimeNs t3_
 
 TimeNs ClockMap::to_host(TimeNs sent_ns) const {
   if (lowest_.empty()) return sent_ns;
-  return sent_ns + base_offset_ns_ + shift_ns_ +
-         static_cast<TimeNs>(slope_ * static_cast<double>(sent_ns - base_sent_ns_));
+  const auto drift_ns = static_cast<TimeNs>(slope_ * apart(sent_ns, base_sent_ns_));
+  return plus(plus(sent_ns, base_offset_ns_), plus(shift_ns_, drift_ns));
 }
 
 ClockEstimate ClockMap::estimate() const {
   ClockEstimate out{.jumps = jumps_};
   if (lowest_.empty()) return out;
   out.known = true;
-  out.offset_s = 1e-9 * static_cast<double>(to_host(newest_sent_ns_) - newest_sent_ns_);
+  out.offset_s = 1e-9 * apart(to_host(newest_sent_ns_), newest_sent_ns_);
   out.drift_ppm = 1e6 * slope_;
   out.spread_ms = 1e-6 * spread_ns_;
   out.longest_ms = 1e-6 * longest_ns_;

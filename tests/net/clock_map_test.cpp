@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "engine/core/random.hpp"
 #include "engine/net/counter_track.hpp"
 #include "engine/net/rough_link.hpp"
@@ -152,6 +155,31 @@ TEST(CounterTrack, WrapsRepeatsAndGapsAreFound) {
   EXPECT_EQ(counts.lost, 1u);
   EXPECT_EQ(counts.older, 1u);
   EXPECT_EQ(counts.repeated, 2u);
+}
+
+// A device says whatever it likes; its clock is right again once it says what a clock says.
+TEST(ClockMap, TimesAtTheEndsOfWhatANumberHoldsAreForgotten) {
+  constexpr TimeNs kLeast = std::numeric_limits<TimeNs>::min(),
+                   kMost = std::numeric_limits<TimeNs>::max();
+  const auto all_finite = [](const ClockEstimate& e) {
+    return std::isfinite(e.offset_s) && std::isfinite(e.drift_ppm) && std::isfinite(e.spread_ms) &&
+           std::isfinite(e.longest_ms);
+  };
+  for (const TimeNs first : {kLeast, kLeast + 1, TimeNs{0}, kMost / 2 + 1, kMost}) {
+    ClockMap clock;
+    TimeNs now = 1'286'000'000;
+    for (const TimeNs said :
+         {first, kMost, kLeast, kMost - 7, kLeast / 2, first, TimeNs{0}, kMost}) {
+      clock.add(said, now += 10'000'000);
+      clock.add_exchange(said, kLeast, kMost, now);
+      EXPECT_TRUE(all_finite(clock.estimate())) << first << ' ' << said;
+    }
+    for (int i = 0; i < 2000; ++i) {
+      now += 10'000'000;
+      clock.add(now - 5'000'000'000, now + 1'000'000);
+    }
+    EXPECT_NEAR(clock.estimate().offset_s, 5.001, 1e-4) << first;
+  }
 }
 
 TEST(CounterTrack, OneCorruptNumberDoesNotMakeGoodOnesOld) {
