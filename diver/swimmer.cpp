@@ -231,11 +231,11 @@ double wanted_sink(double deeper_m, bool swims, SwimmerState& swimmer, double dt
   return std::clamp((swims ? 0.1 : 0.2) * deeper_m, -most_rise_m_s, most_sink_m_s);
 }
 
-// What the hands of a hovering diver do.
+// The hands of a hovering diver rest, turn him, or hold the place.
 enum class Hands { kRest, kTurn, kHold };
 
-// Hands that hold a hovering diver at the place: they push ahead or back, and turn; by turn_rad, or
-// while they hold until the place lies ahead or behind, whichever is nearer.
+// Moves the hands. kTurn turns the diver by turn_rad; kHold pushes ahead or back, and turns the
+// diver until the place lies ahead or behind, whichever is nearer.
 void scull(const SwimGoal& goal, const HumanState& state, Hands hands, double turn_rad,
            SwimmerState& swimmer, double dt_s) {
   const auto [heading, pitch, roll] = attitude_of(state.root.attitude);
@@ -349,9 +349,8 @@ JointRotations posture_for(const Body& body, const SwimmerSettings& settings,
       kTread_rad * std::sqrt(swimmer.tread) * std::sin(swimmer.tread_phase_rad);
   joints[joint_of(kLeftLowerLeg)].y += tread_rad;
   joints[joint_of(kRightLowerLeg)].y -= tread_rad;
-  for (const Segment shin : {kLeftLowerLeg, kRightLowerLeg}) {
+  for (const Segment shin : {kLeftLowerLeg, kRightLowerLeg})
     joints[joint_of(shin)].y -= rests * swimmer.knees_rad;
-  }
   for (const Segment arm : {kLeftUpperArm, kRightUpperArm})
     joints[joint_of(arm)].y = kHoverArms * rests * std::max(swimmer.lift_rad, 0.0);
   const double stroke = stroke_at(swimmer.scull_phase_rad);

@@ -25,7 +25,7 @@ layout(set = 0, binding = kShaftOut, r32f) writeonly uniform image2DArray out_im
 
 layout(constant_id = kSpecShaftTerms) const uint kTerms = ~0u;
 layout(constant_id = kSpecShaftCascades) const uint kCascades = 0;
-layout(constant_id = kSpecShaftSamples) const uint samples = 1;
+layout(constant_id = kSpecShaftSamples) const uint kSamples = 1;
 bool light_has(uint term) { return (kTerms & term) != 0u; }
 uint lamp_count() { return 0u; }
 uint glow_samples() { return 1u; }
@@ -76,8 +76,8 @@ void main() {
     uint order = ((x & 1u) << 3) | ((b.y & 1u) << 2) | (x & 2u) | (b.y >> 1);
     float turn = (float(order) + 0.5) / 16.0;
     float sum = 0.0;
-    for (uint i = 0u; i < samples; ++i) {
-      float share = (float(i) + turn) / float(samples);
+    for (uint i = 0u; i < kSamples; ++i) {
+      float share = (float(i) + turn) / float(kSamples);
       float way_m = -log(max(1.0 - share * reached, 1e-30)) / rate;
       vec3 place = eye + direction * (part_m.x + min(way_m, reach_m));
       float lit = caustic_at(place, way_m * length(ray_dx) * float(kShaftStep));
@@ -87,7 +87,7 @@ void main() {
     }
     // A sight of next to no water scatters nothing: 0 / 0 must not reach the blur.
     float part = all > 1e-6 ? clamp(reached / all, 0.0, 1.0) : 1.0;
-    ratio = 1.0 + (sum / float(samples) - 1.0) * part;
+    ratio = 1.0 + (sum / float(kSamples) - 1.0) * part;
   }
   imageStore(out_image, at, vec4(packed_shaft(ratio, visibility_distance(planar_m))));
 }

@@ -23,7 +23,7 @@ layout(set = 0, binding = kSkylightGrid, scalar) readonly buffer Grid { float op
 layout(set = 0, binding = kSkylightOut, rgba8) writeonly uniform image2DArray out_image;
 
 layout(constant_id = kSpecSkylightTerms) const uint kTerms = ~0u;
-layout(constant_id = kSpecSkylightSamples) const uint samples = 1;
+layout(constant_id = kSpecSkylightSamples) const uint kSamples = 1;
 bool light_has(uint term) { return (kTerms & term) != 0u; }
 uint lamp_count() { return 0u; }
 uint glow_samples() { return 1u; }
@@ -97,13 +97,13 @@ void main() {
     uint order = ((x & 1u) << 3) | ((bits.y & 1u) << 2) | (x & 2u) | (bits.y >> 1);
     float turn = (float(order) + 0.5) / 16.0;
     float sum = 0.0;
-    for (uint i = 0u; i < samples; ++i) {
-      float share = (float(i) + turn) / float(samples);
+    for (uint i = 0u; i < kSamples; ++i) {
+      float share = (float(i) + turn) / float(kSamples);
       float way_m = from_m - log(max(1.0 - share * own, 1e-30)) / rate;
       sum += open_at(eye + direction * clamp(way_m, from_m, to_m));
     }
     float part = abs(all) > 1e-6 ? clamp(own * before / all, 0.0, 1.0) : 1.0;
-    along = 1.0 + (sum / float(samples) - 1.0) * part;
+    along = 1.0 + (sum / float(kSamples) - 1.0) * part;
   }
   imageStore(out_image, at, vec4(along, there, 1.0, 0.5 * visibility_distance(planar_m)));
 }

@@ -24,8 +24,8 @@ constexpr TimeNs kSparse_ns = 250'000'000, kSparseBucket_ns = 5 * ClockMap::kBuc
 constexpr double kAgree_ns = 250'000.0, kAgreeDrift = 20e-6, kAgreeing = 0.03;
 constexpr std::size_t kNearBuckets = 4;
 
-// A device may say any time, so sums and differences of times wrap around instead of overflowing.
-// What they give is exact where the result fits.
+// A device may say any time, so sums and differences of times wrap around instead of overflowing. A
+// result that fits is exact.
 TimeNs plus(TimeNs a, TimeNs b) {
   return static_cast<TimeNs>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
 }
@@ -45,7 +45,7 @@ void ClockMap::restart() {
 }
 
 // How long the way took beyond the shortest; the longest is forgotten slowly.
-void ClockMap::note_way(TimeNs way_ns, TimeNs) {
+void ClockMap::note_way(TimeNs way_ns) {
   const double way = std::max(0.0, static_cast<double>(way_ns));
   spread_ns_ += kForget * (way - spread_ns_);
   longest_ns_ = std::max(way, longest_ns_ * (1.0 - kForget / 16.0));
@@ -119,7 +119,7 @@ void ClockMap::keep(TimeNs sent_ns, TimeNs arrived_ns) {
     choose_points(place);
     fit();
   }
-  note_way(difference(arrived_ns, to_host(sent_ns)), arrived_ns);
+  note_way(difference(arrived_ns, to_host(sent_ns)));
 }
 
 // Whether enough of the quickest packets near this one took as long as it did. A device that sends

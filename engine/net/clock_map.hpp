@@ -71,7 +71,7 @@ class ClockMap {
   bool agreed(std::size_t bucket, std::size_t place) const;
   void fit();
   double slope_across(double share, double slope) const;
-  void note_way(TimeNs way_ns, TimeNs arrived_ns);
+  void note_way(TimeNs way_ns);
   Verdict judge(TimeNs late_ns, TimeNs sent_ns, TimeNs arrived_ns);
 
   std::deque<Bucket> buckets_;  // oldest first

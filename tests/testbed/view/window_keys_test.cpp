@@ -172,7 +172,7 @@ ImageU8 read_ppm(const fs::path& path) {
   return image;
 }
 
-// Of all that the program wrote to files and sockets.
+// The number of bytes that the program had written to files and sockets.
 double written_bytes(const fs::path& path) {
   std::istringstream text(test::text_of(path));
   std::string key;
@@ -227,7 +227,7 @@ class ShownInWindow : public WindowKeys {
       sum += std::abs(int{a.data[i]} - int{b.data[i]});
     EXPECT_LE(sum / static_cast<double>(a.data.size()), mean_within) << screenshot << ' ' << seen;
   }
-  // Of the last frames, which have no screenshot.
+  // Whether one of the last frames, which have no screenshot, had the pass.
   bool has_pass(const std::string& name) {
     const auto timeline =
         nlohmann::json::parse(test::text_of(scratch_ / "t.plot.json"), nullptr, false);
