@@ -300,9 +300,11 @@ void steer(double turn, double nose_up, double roll_rad, const Vec6& velocity,
   const double leans =
       slow(swimmer) * std::clamp(-2.0 * swimmer.lift_rad / kMostLift_rad, 0.0, 1.0);
   swimmer.roll_sum = rests * std::clamp(swimmer.roll_sum + roll * dt_s, -1.0, 1.0);
-  const double tilt = std::clamp(
-      2.0 * (roll - leans * yaw * kMostBank_rad) + 1.0 * roll_rate + 0.5 * swimmer.roll_sum, -1.0,
-      1.0);
+  // Slow legs right little: they begin early.
+  const double tilt =
+      std::clamp(std::lerp(8.0, 2.0, rests) * (roll - leans * yaw * kMostBank_rad) +
+                     std::lerp(2.0, 1.0, rests) * roll_rate + 0.5 * swimmer.roll_sum,
+                 -1.0, 1.0);
   // A resting diver corrects the roll by bending to a side, which moves trunk and legs apart.
   const double aside = tilt * std::max(leans, slow(swimmer));
   const double turns = yaw * (1.0 - leans);

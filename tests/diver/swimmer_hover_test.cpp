@@ -251,6 +251,42 @@ TEST(Swimmer, WithoutAJacketStartsNeutralAndStays) {
   }
 }
 
+// Without the jacket's cloth to lift it, the tank on the back would turn a slow diver over.
+TEST(Swimmer, WithoutAJacketDoesNotRollOver) {
+  BodyParameters usual, bare_skin, big_tank;
+  bare_skin.gear.suit.reset();
+  big_tank.gear.suit->thickness_m = 0.007;
+  big_tank.gear.tanks = {tank_of(15e-3)};
+  big_tank.gear.tanks[0].pressure_pa = 230e5;
+  struct Case {
+    const char* name;
+    BodyParameters diver;
+  };
+  for (Case c : {Case{"usual", usual}, {"bare skin", bare_skin}, {"big tank", big_tank}}) {
+    c.diver.gear.jacket.reset();
+    c.diver.start_depth_m = 12.0;
+    const Body body = make_body(c.diver).value();
+    double roll_rad = 0.0, off_m = 0.0;
+    const auto watch = [&](const HumanState& state) {
+      roll_rad = std::max(roll_rad, std::abs(attitude_of(state.root.attitude).roll_rad));
+      off_m = std::max(off_m, std::abs(state.root.position_ned_m.z - 12.0));
+    };
+    for (const double speed_m_s : {0.2, 0.25, 0.3, 0.35}) {
+      Swim s = begin(body, {0.0, 0.0, 12.0}, 0.0);
+      swim_for(body, s, {{1000.0, 0.0, 12.0}, speed_m_s}, 60.0, watch);
+      EXPECT_NEAR(s.state.root.position_ned_m.x / 60.0, speed_m_s, 0.05) << c.name;
+      EXPECT_LT(degrees(roll_rad), 10.0) << c.name << " at " << speed_m_s;
+    }
+    // Hovering, he meets a current.
+    Swim s = begin(body, {0.0, 0.0, 12.0}, 0.0);
+    s.inputs.current_ned_m_s = Vec3(0.0, 0.2, 0.0);
+    swim_for(body, s, {{0.0, 0.0, 12.0}, 0.0}, 90.0, watch);
+    EXPECT_LT(degrees(roll_rad), 20.0) << c.name;
+    EXPECT_LT(off_m, 0.6) << c.name;
+    EXPECT_LT(glm::length(s.state.root.position_ned_m - Vec3(0.0, 0.0, 12.0)), 3.0) << c.name;
+  }
+}
+
 // With too much lead, 22 N heavy, he swims up whenever he has sunk.
 TEST(Swimmer, WhoIsTooHeavyWithoutAJacketKicksUp) {
   BodyParameters diver;
