@@ -302,8 +302,8 @@ void steer(double turn, double nose_up, double roll_rad, const Vec6& velocity,
   swimmer.roll_sum = rests * std::clamp(swimmer.roll_sum + roll * dt_s, -1.0, 1.0);
   // Slow legs right little: they begin early.
   const double tilt =
-      std::clamp(std::lerp(8.0, 2.0, rests) * (roll - leans * yaw * kMostBank_rad) +
-                     std::lerp(2.0, 1.0, rests) * roll_rate + 0.5 * swimmer.roll_sum,
+      std::clamp(std::lerp(8.0, 4.0, rests) * (roll - leans * yaw * kMostBank_rad) +
+                     std::lerp(2.0, 1.5, rests) * roll_rate + 0.5 * swimmer.roll_sum,
                  -1.0, 1.0);
   // A resting diver corrects the roll by bending to a side, which moves trunk and legs apart.
   const double aside = tilt * std::max(leans, slow(swimmer));
