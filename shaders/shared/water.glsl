@@ -60,15 +60,18 @@ float beam_of(uint i, float cosine) {
   return smoothstep(light.lamps[i].cos_outer, light.lamps[i].cos_inner, cosine);
 }
 
+// Share of the sun's beam that a metre of water turns to the eye, 1/(m sr). The scattering angle is between the
+// light's travel and the way to the eye: its cosine is that of the sight and the direction to the sun.
+vec3 turned_from_beam(float to_sun) {
+  return light.particle_scattering * henyey_greenstein(to_sun, kParticleG) +
+         light.water_scattering * sea_water_phase(to_sun);
+}
+
 // Radiance that a metre of water adds along a sight in the unit direction, 1/m, where irradiance
 // comes down and the share direct of it still in the sun's beam, of which the share lit gets there, and of
 // the rest the share skylight.
 vec3 scattered_towards(vec3 direction, vec3 irradiance, vec3 direct, float lit, float skylight) {
-  // The scattering angle is between the light's travel and the way to the eye, so its cosine is
-  // that of the view direction and the direction to the sun.
-  float to_sun = dot(direction, light.to_sun);
-  vec3 from_beam = light.particle_scattering * henyey_greenstein(to_sun, kParticleG) +
-                   light.water_scattering * sea_water_phase(to_sun);
+  vec3 from_beam = turned_from_beam(dot(direction, light.to_sun));
   vec3 from_diffuse = light.particle_scattering * henyey_greenstein(direction.y, kDiffuseG) +
                       light.water_scattering * sea_water_phase(direction.y);
   return irradiance * (direct * lit * from_beam / light.sun_cosine +
@@ -116,7 +119,7 @@ float water_length(float from_depth_m, float to_depth_m, float length_m) {
 struct Sight {
   vec3 transmittance;
   vec3 added;
-  vec3 water;      // radiance of endless water behind its end
+  vec3 water;      // radiance of endless water behind its end, without the glare around the sun
   float length_m;  // in water
 };
 
@@ -149,12 +152,12 @@ Sight look_through(float depth_m, vec3 direction, float length_m, float lit, flo
   // Light scattered out of the beam's core comes from all about, as skylight does.
   if (light_has(kLightSkylight))
     lit = max(lit - (1.0 - core_share(depth_m)) * (1.0 - skylight), 0.0);
-  vec3 source =
-      scattered_towards(direction, downwelling(depth_m), direct_share(depth_m), lit, skylight);
+  vec3 irradiance = downwelling(depth_m), direct = direct_share(depth_m);
+  vec3 source = scattered_towards(direction, irradiance, direct, lit, skylight);
   if (light_has(kLightAmbient) && light.bottom_depth_m >= 0.0) {
     // The bottom shines evenly from below; of its light a level sight is sent half, one that looks down, along
     // which it travels forwards, nearly all.
-    vec3 upwards = downwelling(depth_m) * from_bottom(depth_m) / kPi * skylight;
+    vec3 upwards = irradiance * from_bottom(depth_m) / kPi * skylight;
     source += upwards * (light.particle_scattering + light.water_scattering) * (0.5 - 0.45 * direction.y);
   }
   // Integral of source * exp(-(c + K_d down) s) over the length; down is the sine of the dive angle.
@@ -166,7 +169,11 @@ Sight look_through(float depth_m, vec3 direction, float length_m, float lit, flo
   if (light_has(kLightForwardScatter)) {
     // Upwards in clear water light grows faster than it fades, up to the surface: a tenth of c is the floor.
     vec3 deeper = exp(clamp(light.diffuse_attenuation * direction.y * length_m, vec3(-80.0), vec3(80.0)));
-    sight.water = source * deeper / max(rate, 0.1 * light.beam_attenuation + 1e-9);
+    // The sun's beam lights the water in front of an object, too: only what comes evenly from behind is hidden by it.
+    float to_sun = dot(direction, light.to_sun);
+    if (to_sun > 0.0)
+      source -= murk * irradiance * direct * lit / light.sun_cosine * (turned_from_beam(to_sun) - turned_from_beam(0.0));
+    sight.water = max(source, vec3(0.0)) * deeper / max(rate, 0.1 * light.beam_attenuation + 1e-9);
   }
   return sight;
 }

@@ -150,6 +150,29 @@ TEST_F(PictureExtremes, ExposureOverTwentyStopsGoesFromBlackToWhiteWithoutHoles)
   EXPECT_LT(last, 1.0);
 }
 
+// What scatters forwards beside the sun's glare is not taken from things in front of it.
+TEST_F(PictureExtremes, AThingInFrontOfTheSunKeepsEachColour) {
+  const Place place{.eye_m = {0.0, -13.0, 0.0},
+                    .pitch_rad = std::acos(std::cos(radians(50.0)) / 1.333),
+                    .bed_m = 40.0,
+                    .particles = false};
+  scene::Scene clear = everything(place);
+  clear.lamps.clear();
+  clear.objects[1].mount.pose.position_m =
+      place.eye_m + 3.0 * Vec3(0.1, std::sin(place.pitch_rad), -std::cos(place.pitch_rad));
+  clear.water->forward_scatter.reset();
+  scene::Scene scattering = clear;
+  scattering.water->forward_scatter = scene::ForwardScatter{};
+  NERITIC_ASSERT_OK(const auto sharp_session, Session::create(device(), std::move(clear)));
+  NERITIC_ASSERT_OK(const auto soft_session, Session::create(device(), std::move(scattering)));
+  NERITIC_ASSERT_OK(const ImageU8 sharp, shown(*sharp_session));
+  NERITIC_ASSERT_OK(const ImageU8 soft, shown(*soft_session));
+  int lost = 0;
+  for (std::size_t i = 0; i < sharp.data.size(); ++i)
+    lost += sharp.data[i] > 20 && soft.data[i] < sharp.data[i] / 5;
+  EXPECT_EQ(lost, 0);
+}
+
 TEST_F(PictureExtremes, AStillSceneChangesByLessThanALevelAFrame) {
   NERITIC_ASSERT_OK(const auto session,
                     Session::create(device(), everything({.particles = false})));
