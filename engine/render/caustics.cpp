@@ -33,8 +33,11 @@ Result<graph::ImageHandle> Renderer::declare_caustics(graph::FrameGraph& graph,
                                                 std::uint64_t{4} * shared::kCausticLevels * n * n),
                           graph::Access::kTransferWrite);
       },
-      [](const Data& data, graph::PassContext& context) {
-        vkCmdFillBuffer(context.cmd(), context.buffer(data.sums).handle(), 0, VK_WHOLE_SIZE, 0);
+      [&params, n](const Data& data, graph::PassContext& context) {
+        const VkDeviceSize level_bytes = VkDeviceSize{4} * n * n;
+        vkCmdFillBuffer(context.cmd(), context.buffer(data.sums).handle(),
+                        params.first_level * level_bytes,
+                        (params.end_level - params.first_level) * level_bytes, 0);
       });
   const Data& thrown = graph.add_pass<Data>(
       name,

@@ -28,13 +28,13 @@ struct CausticsParams {
 
 // Depths of the levels of pictures, m: kCausticFirst_m kCausticStep^i. Between them the picture is
 // blended, beyond them the last stays.
-NERITIC_CONST uint kCausticLevels = 8;
+NERITIC_CONST uint kCausticLevels = 15;
 // The image's layers: four levels each, of which the last is the next layer's first, so that a
 // place between two levels is one sample. Level i is channel i % 3 of layer i / 3.
-NERITIC_CONST uint kCausticLayers = 3;
+NERITIC_CONST uint kCausticLayers = 5;
 NERITIC_CONST uint kCausticLayerStep = 3;
 NERITIC_CONST float kCausticFirst_m = 0.4f;
-NERITIC_CONST float kCausticStep = 1.6f;
+NERITIC_CONST float kCausticStep = 1.26f;
 // A ray's energy, in whole numbers, so that sums do not depend on their order and none is lost: the
 // square of kCausticPart.
 NERITIC_CONST uint kCausticPart = 64;

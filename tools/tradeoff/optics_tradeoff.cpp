@@ -119,7 +119,7 @@ Result<double> inscatter_ms(gpu::Device& device, std::uint32_t samples, bool qui
 // --- Caustics ------------------------------------------------------------------------------------
 
 constexpr std::uint32_t kBins = 48;  // a side, on which light is compared
-constexpr std::uint32_t kLevel = 3;  // of the depths, 1.64 m
+constexpr std::uint32_t kLevel = 6;  // of the depths, 1.60 m
 
 // Vector form of Snell's law, into water.
 Vec3 refracted(const Vec3& travel, const Vec3& normal) {
@@ -376,7 +376,7 @@ Result<bool> write_optics_tradeoff(const std::filesystem::path& folder,
       "# The water's optics: error over cost\n\n{}. Against brute force in double.\n\n"
       "- inscatter: a lamp's beam along 27 sights by samples at even angles, root mean square of "
       "the relative error against steps of even length; ms a lamp and megapixel.\n"
-      "- caustics: light 1.64 m under a tile of 6 m by texels a side, root mean square on 48 x 48 "
+      "- caustics: light 1.60 m under a tile of 6 m by texels a side, root mean square on 48 x 48 "
       "squares (mean 1) against rays refracted one by one; ms a tile.\n"
       "- forward scatter: contrast of 2 to 40 cycles a radian at 5 and 20 m by octaves, largest "
       "difference from Wells's integral; ms a megapixel.\n"

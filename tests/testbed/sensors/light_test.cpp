@@ -259,6 +259,25 @@ TEST_F(Light, ASineWavesFirstFocusLiesWhereTheFormulaSays) {
   EXPECT_NEAR(1.0 / (1.0 - 1.0 / crest), 2.028, 0.04);
 }
 
+// What lies between two levels has a blend of theirs: the brightest level is where a floor would
+// be.
+TEST_F(Light, TheBrightestDepthUnderASineWaveIsItsFirstFocus) {
+  const scene::Caustics caustics{
+      .waves = {{0.05, 1.0, radians(90.0)}}, .tile_m = 2.0, .texels = 512};
+  const shared::CausticsParams params =
+      render::caustics_params(caustics, Vec3(0.0, 1.0, 0.0), 0.0, 1);
+  const std::vector<float> light = thrown(device(), params);
+  double most = 0.0, at_m = 0.0;
+  for (std::uint32_t level = 0; level < shared::kCausticLevels; ++level)
+    for (std::uint32_t x = 0; x < 512; ++x) {
+      const double here =
+          light[(std::size_t{level / shared::kCausticLayerStep} * 512 * 512 + x) * 4 +
+                level % shared::kCausticLayerStep];
+      if (here > most) most = here, at_m = params.first_m * std::pow(params.step, level);
+    }
+  EXPECT_NEAR(at_m, 2.028, 0.05);
+}
+
 // Open water under a sun in the zenith, seen level from 3 m deep.
 scene::Scene open_water(double fov_deg) {
   scene::Scene scene;
