@@ -1,5 +1,7 @@
 #include "engine/net/mxtp.hpp"
 
+#include <bit>
+
 #include "engine/net/mxtp_frames.hpp"
 #include "tests/net/vectors.hpp"
 
@@ -103,6 +105,89 @@ TEST(Mxtp, OtherTypesHaveTheirVectorsValues) {
   for (const char* name :
        {"MXTP25 time code, spec form", "MXTP25 time code, SDK form (length prefixed)"})
     EXPECT_EQ(std::get<MxtpTimeCode>(decoded(vector_named(name)).items).text, "16:00:31.123");
+}
+
+// The bits of an item's numbers in the order of the wire.
+using Words = std::vector<std::uint32_t>;
+void add(Words& words, std::uint32_t number) {
+  words.push_back(number);
+}
+template <std::size_t N>
+void add(Words& words, const std::array<float, N>& numbers) {
+  for (const float number : numbers) words.push_back(std::bit_cast<std::uint32_t>(number));
+}
+void add(Words& words, const MxtpEuler& item) {
+  add(words, item.id), add(words, item.position_cm), add(words, item.angles_deg);
+}
+void add(Words& words, const MxtpPose& item) {
+  add(words, item.id), add(words, item.position_m), add(words, item.rotation);
+}
+void add(Words& words, const MxtpJoint& item) {
+  add(words, item.parent_segment << 8 | item.parent_point);
+  add(words, item.child_segment << 8 | item.child_point);
+  add(words, item.angles_deg);
+}
+void add(Words& words, const MxtpLinear& item) {
+  add(words, item.id), add(words, item.position_m);
+  add(words, item.velocity_m_s), add(words, item.acceleration_m_s2);
+}
+void add(Words& words, const MxtpAngular& item) {
+  add(words, item.id), add(words, item.rotation);
+  add(words, item.velocity_rad_s), add(words, item.acceleration_rad_s2);
+}
+void add(Words& words, const MxtpTracker& item) {
+  add(words, item.id), add(words, item.rotation), add(words, item.free_acceleration_m_s2);
+  if (item.whole) add(words, item.acceleration_m_s2), add(words, item.turn_rate_rad_s);
+  add(words, item.magnetic_field);
+}
+void add(Words& words, const MxtpMassCentre& item) {
+  add(words, item.position_m);
+  if (item.moving) add(words, item.velocity_m_s), add(words, item.acceleration_m_s2);
+}
+template <class Item>
+Words words_of(const std::vector<Item>& items) {
+  Words words;
+  for (const Item& item : items) add(words, item);
+  return words;
+}
+Words words_of(const MxtpTimeCode&) {
+  return {};
+}
+
+// Type 01 as the specification says: a segment, three coordinates, three angles. No vector has it.
+constexpr const char* kEuler =
+    "4d58545030310000000780020000002a00170000000000380000000142c80000c2480000412000003f800000400000"
+    "00"
+    "4040000000000017bf800000c00000003f00000042b40000c334000041700000";
+
+TEST(Mxtp, EveryItemHasItsBytesBitForBit) {
+  std::vector<std::vector<std::byte>> datagrams{bytes_of(std::string(kEuler))};
+  for (const json all = wire_vectors(); const json& vector : all["xsens_mvn"]["vectors"])
+    datagrams.push_back(bytes_of(vector));
+  std::map<int, std::size_t> compared;
+  for (const auto& bytes : datagrams) {
+    const auto datagram = decode_mxtp(bytes);
+    ASSERT_TRUE(datagram.ok()) << datagram.error().message;
+    if (datagram->header.type == 25) continue;  // a text
+    Words wire;
+    for (std::size_t at = kMxtpHeader; at < bytes.size(); at += 4)
+      wire.push_back(static_cast<std::uint32_t>(std::to_integer<unsigned>(bytes[at]) << 24 |
+                                                std::to_integer<unsigned>(bytes[at + 1]) << 16 |
+                                                std::to_integer<unsigned>(bytes[at + 2]) << 8 |
+                                                std::to_integer<unsigned>(bytes[at + 3])));
+    EXPECT_EQ(std::visit([](const auto& items) { return words_of(items); }, datagram->items), wire)
+        << datagram->header.type;
+    compared[datagram->header.type] += wire.size();
+  }
+  EXPECT_THAT(compared, testing::UnorderedElementsAre(
+                            testing::Key(1), testing::Key(2), testing::Key(20), testing::Key(21),
+                            testing::Key(22), testing::Key(23), testing::Key(24)));
+  const auto euler = decode_mxtp(datagrams[0]);
+  const auto& items = std::get<std::vector<MxtpEuler>>(euler->items);
+  ASSERT_EQ(items.size(), 2u);
+  EXPECT_EQ(items[0].position_cm, (Float3{100, -50, 10}));
+  EXPECT_EQ(items[1].id, 23u);
+  EXPECT_EQ(items[1].angles_deg, (Float3{90, -180, 15}));
 }
 
 TEST(Mxtp, WhatIsMalformedIsRefusedAsItsFactsSay) {
