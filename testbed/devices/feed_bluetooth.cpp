@@ -1,6 +1,6 @@
 // A heart strap over Bluetooth LE, through BlueZ on the system's D-Bus (by libsystemd's sd-bus):
 // connects, subscribes to the heart rate and, where there is one, to Polar's ECG, which it starts.
-// A strap that goes away is looked for again.
+// A strap that goes away or falls silent is looked for again.
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
@@ -23,6 +23,9 @@ constexpr std::string_view kRateUuid = "00002a37-0000-1000-8000-00805f9b34fb",
                            kPmdDataUuid = "fb005c82-02e7-f387-1cad-8acd2d8df0c8";
 constexpr std::uint64_t kCall_us = 5'000'000;
 constexpr TimeNs kTryEvery_ns = 5 * kSecond_ns;
+// A strap sends each second. BlueZ says nothing of a strap whose adapter was pulled out, or if it
+// ends itself.
+constexpr TimeNs kSilent_ns = 5 * kSecond_ns;
 
 struct BusError {
   const char* name = nullptr;
@@ -81,6 +84,7 @@ class BluetoothFeed final : public Feed {
 
   void receive(const net::Received& received, int wait_ms) override {
     received_ = &received;
+    if (!rate_path_.empty() && now_ns() - heard_ns_ > kSilent_ns) look_again("the strap is silent");
     if (rate_path_.empty() && now_ns() >= next_try_ns_) {
       connect();
       next_try_ns_ = now_ns() + kTryEvery_ns;
@@ -169,7 +173,13 @@ class BluetoothFeed final : public Feed {
         !pmd_path_.empty() && !control.empty())
       start_ecg(control);
     rate_path_ = rate;
+    heard_ns_ = now_ns();
     trouble_.clear();
+  }
+
+  void look_again(const char* why) {
+    rate_path_.clear();
+    trouble_ = why;
   }
 
   // 130 Hz, 14 bits. A strap that refuses still sends its rate.
@@ -256,16 +266,14 @@ class BluetoothFeed final : public Feed {
       const std::string_view name = key ? key : "";
       int connected = 1;
       if (value && name == "Value" && bus_of_.enter(message, 'v', "ay") > 0) {
+        heard_ns_ = now_ns();
         const void* data = nullptr;
         std::size_t size = 0;
         if (bus_of_.read_array(message, 'y', &data, &size) >= 0 && received_)
           (*received_)(net::Bytes(static_cast<const std::byte*>(data), size), false);
         bus_of_.exit(message);
       } else if (!value && name == "Connected" && bus_of_.read(message, "v", "b", &connected) > 0) {
-        if (connected == 0) {
-          rate_path_.clear();
-          trouble_ = "the strap went away";
-        }
+        if (connected == 0) look_again("the strap went away");
       } else {
         bus_of_.skip(message, "v");
       }
@@ -277,7 +285,7 @@ class BluetoothFeed final : public Feed {
   SdBus bus_of_;
   std::string wanted_, device_path_, rate_path_, pmd_path_, trouble_;
   void* bus_ = nullptr;
-  TimeNs next_try_ns_ = 0;
+  TimeNs next_try_ns_ = 0, heard_ns_ = 0;
   const net::Received* received_ = nullptr;
 };
 
