@@ -8,7 +8,7 @@ import unittest.mock
 import numpy as np
 
 import neritic
-from neritic import tradeoff
+from neritic import speed, tradeoff
 
 
 class Environments(unittest.TestCase):
@@ -35,6 +35,11 @@ class Environments(unittest.TestCase):
                 ends.append(b"".join(a.tobytes() for a in obs.values()) + reward.tobytes())
             self.assertEqual(ends[0], ends[1], task)
             self.assertEqual(ends[0], ends[2], task)
+
+    def test_two_cores_make_a_quarter_of_a_million_steps_a_second(self):
+        for task in speed.TASKS:
+            _, cost_us = speed.env_steps(task, 4096, seconds=0.3)
+            self.assertLess(cost_us, 2e6 / 250e3, task)
 
     def test_actions_have_the_exact_shape_and_are_finite_numbers(self):
         env = neritic.vector("hover", 5)

@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import resource
 import subprocess
 import sys
 import tempfile
@@ -14,6 +15,7 @@ import numpy as np
 
 import neritic
 import neritic.join
+from neritic import speed
 
 try:
     import msgpack  # noqa: F401
@@ -111,6 +113,38 @@ class Remote(unittest.TestCase):
                 with self.assertRaisesRegex(neritic.BadInput, "found .*; accepted: ") as caught:
                     call()
                 self.assertNotIn("\n", str(caught.exception))
+
+    def test_an_image_of_500_x_500_floats_costs_no_new_pages(self):
+        faults, bring = [], neritic.remote.Core._bring
+
+        def counted(core, images, frames):
+            before = resource.getrusage(resource.RUSAGE_THREAD).ru_minflt
+            bring(core, images, frames)
+            if images:
+                faults.append(resource.getrusage(resource.RUSAGE_THREAD).ru_minflt - before)
+
+        try:
+            with unittest.mock.patch.object(neritic.remote.Core, "_bring", counted):
+                speed.remote_image_ms(rounds=12)
+        except neritic.Error as error:
+            self.skipTest(str(error))
+        # Its 245 pages are new with the first ones, whose memory the others use again.
+        self.assertGreaterEqual(len(faults), 10)
+        self.assertLess(sum(faults[3:]), 100, faults)
+
+    def test_an_images_memory_is_used_again_when_nobody_has_it(self):
+        buffers = neritic.remote._Buffers()
+        first = np.frombuffer(buffers.take(1000), np.uint8)
+        second = np.frombuffer(buffers.take(1000), np.uint8)
+        self.assertFalse(np.shares_memory(first, second))
+        part, at = first.reshape(10, 100)[3:], first.ctypes.data
+        del first
+        self.assertNotEqual(np.frombuffer(buffers.take(1000), np.uint8).ctypes.data, at)
+        del part
+        self.assertEqual(np.frombuffer(buffers.take(1000), np.uint8).ctypes.data, at)
+        self.assertEqual(len(buffers.take(999)), 999)
+        kept = [buffers.take(1000) for _ in range(100)]
+        self.assertEqual(len({id(one) for one in kept}), 100)
 
     def test_a_long_tick_loses_no_reading(self):
         scene = str(ROOT / "assets/scenes/mission_measured.toml")

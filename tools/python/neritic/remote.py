@@ -5,14 +5,16 @@ The messages are in testbed/server/PROTOCOL.md. Needs Debian's python3-zmq and p
 
 from __future__ import annotations
 
+import math
 import mmap
 import os
 import re
 import struct
+import sys
 import threading
 import time
 import weakref
-from typing import Any, Mapping, Optional, Union
+from typing import Any, Mapping, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +31,7 @@ _STEPS, _WAIT_S = 100_000, 60.0
 _AGAIN_S, _HEARTBEAT_MS, _DEAD_MS = 1.0, 5000, 15000
 # How often a call that waits looks whether another thread closes the connection.
 _LOOK_S = 0.05
+_UNUSED = 2  # references to what a list alone has, the counting call's own among them
 _ROW = struct.Struct("<IIQqq")
 _EVENT = struct.Struct("=Hi")  # of the library's monitor, in this machine's byte order
 
@@ -40,6 +43,25 @@ def _image(facts: Mapping[str, Any], data: bytearray) -> Pixels:
     return Pixels(np.frombuffer(data, np.dtype(facts["type"])).reshape(shape), facts["stream"], facts["sequence"],
                   facts["stamp_ns"], facts["arrival_ns"], facts["position"], facts["orientation"], facts["intrinsics"],
                   facts["range_m"], facts["azimuth"], facts["elevation"])
+
+
+class _Buffers:
+    """Memory of images, used again when nobody has it any more: the system's new pages cost up to milliseconds an image."""
+
+    MOST = 16
+
+    def __init__(self) -> None:
+        self._kept: list[bytearray] = []
+
+    def take(self, size: int) -> bytearray:
+        """One of that size. It belongs to whoever keeps it."""
+        for i in range(len(self._kept)):
+            if len(self._kept[i]) == size and sys.getrefcount(self._kept[i]) == _UNUSED:
+                return self._kept[i]
+        self._kept.append(bytearray(size))
+        if len(self._kept) > self.MOST:
+            del self._kept[0]
+        return self._kept[-1]
 
 
 class _Ring:
@@ -55,13 +77,19 @@ class _Ring:
         if magic != b"NRTCRNG1" or self.capacity != len(self._map) - 4096:
             raise OSError("no memory of arrays")
 
-    def read(self, position: int, size: int) -> Optional[bytearray]:
-        """A copy; None: overwritten meanwhile."""
+    def prepare(self) -> None:
+        """Touches each page, which costs microseconds the first time, so that no image has to."""
+        np.frombuffer(self._map, np.uint8)[::mmap.PAGESIZE].max()
+
+    def read(self, position: int, to: bytearray) -> bool:
+        """Copies an array; False: it was overwritten meanwhile."""
         at = 4096 + position % self.capacity
-        with memoryview(self._map) as whole_ring:
-            data = bytearray(whole_ring[at:at + size])
+        if at + len(to) > len(self._map):
+            return False
+        with memoryview(self._map) as whole_ring, memoryview(to) as data:
+            data[:] = whole_ring[at:at + len(to)]  # a bytearray's own assignment would copy twice
         claimed, = struct.unpack_from("<Q", self._map, 24)
-        return data if len(data) == size and claimed - position <= self.capacity else None
+        return claimed - position <= self.capacity
 
 
 def _end(socket: Any, monitor: Any, context: Any) -> None:
@@ -135,6 +163,7 @@ class Core:
         self._newest: list[Row] = [((i, 0, 0, 0, 0), np.zeros(0)) for i in range(len(self.streams))]
         self._arrived: list[Row] = []
         self._images: list[Pixels] = []
+        self._buffers = _Buffers()
         self.step, self.time = hello["step"], hello["time_ns"] * 1e-9
         self._hash, self._hash_step = 0, -1
         self.lost_readings = self.lost_images = self._lost_here = 0
@@ -240,22 +269,24 @@ class Core:
                 self._newest[row[0][0]] = row
         if "arrived" in answer:
             self._arrived += self._rows(answer["arrived"], frames)
-        for facts in answer.get("images", ()):
-            if "frame" in facts:
-                self._images.append(_image(facts, bytearray(frames[facts["frame"]])))
-                continue
-            size = int(np.prod(facts["shape"])) * np.dtype(facts["type"]).itemsize
-            data = self._ring.read(facts["shared"], size) if self._ring else None
-            if data is None:
-                self._lost_here += 1
-            else:
-                self._images.append(_image(facts, data))
+        self._bring(answer.get("images", ()), frames)
         self.lost_readings = answer.get("lost_readings", self.lost_readings)
         self.lost_images = answer.get("lost_images", 0) + self._lost_here
         self.step, self.time = answer["step"], answer["time_ns"] * 1e-9
         self.clock = answer["clock"]
         if "hash" in answer:
             self._hash, self._hash_step = answer["hash"], self.step
+
+    def _bring(self, images: Sequence[Mapping[str, Any]], frames: list[bytes]) -> None:
+        """The images of an answer, each in memory of this process."""
+        for facts in images:
+            data = self._buffers.take(math.prod(facts["shape"]) * np.dtype(facts["type"]).itemsize)
+            if "frame" in facts:
+                memoryview(data)[:] = frames[facts["frame"]]
+            elif not self._ring or not self._ring.read(facts["shared"], data):
+                self._lost_here += 1
+                continue
+            self._images.append(_image(facts, data))
 
     # A world's interface.
 
@@ -307,6 +338,8 @@ class Core:
         self._call("link", stream=self.streams[place][0], delay_s=delay, jitter_s=jitter, loss=loss)
 
     def want_image(self, place: int, rate: float, keep: bool) -> None:
+        if self._ring:
+            self._ring.prepare()
         self._call("image", 60.0, stream=self.streams[place][0], rate_hz=rate, keep=keep)
 
     def drop_image(self, place: int) -> None:
