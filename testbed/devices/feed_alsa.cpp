@@ -1,5 +1,7 @@
 // A microphone at this machine's sound card, by ALSA's library, which PipeWire and PulseAudio serve
-// too. Its samples become sound packets of 20 ms, stamped by the card's own clock.
+// too. Its samples become sound packets of 20 ms, stamped by the card's own clock. A card that is
+// pulled out is looked for again.
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -15,6 +17,7 @@ namespace {
 constexpr int kCapture = 1, kNonblock = 1, kS16Le = 2, kInterleaved = 3;
 constexpr unsigned kLatency_us = 100'000;
 constexpr double kSoundPacket_s = 0.02;
+constexpr TimeNs kCardTryEvery_ns = 1'000'000'000;
 
 struct Alsa {
   int (*open)(void** pcm, const char* name, int stream, int mode) = nullptr;
@@ -31,7 +34,7 @@ class AlsaFeed final : public Feed {
  public:
   static Result<std::unique_ptr<Feed>> open(const scene::DeviceSource& source) {
     NERITIC_TRY(SharedLibrary library, SharedLibrary::load("libasound.so.2", "libasound2"));
-    auto feed = std::unique_ptr<AlsaFeed>(new AlsaFeed(std::move(library), source.rate_hz));
+    auto feed = std::unique_ptr<AlsaFeed>(new AlsaFeed(std::move(library), source));
     Alsa& alsa = feed->alsa_;
     SharedLibrary& from = feed->library_;
     from.find("snd_pcm_open", alsa.open);
@@ -42,32 +45,26 @@ class AlsaFeed final : public Feed {
     from.find("snd_pcm_close", alsa.close);
     from.find("snd_strerror", alsa.words);
     NERITIC_TRY_STATUS(from.complete());
-    const auto failed = [&](int error) {
-      return failure(ErrorCode::kIo, "sound card {}: {}", source.port, alsa.words(error));
-    };
-    if (const int e = alsa.open(&feed->pcm_, source.port.c_str(), kCapture, kNonblock); e < 0)
-      return failed(e);
-    if (const int e =
-            alsa.set_params(feed->pcm_, kS16Le, kInterleaved, 1,
-                            static_cast<unsigned>(std::lround(source.rate_hz)), 1, kLatency_us);
-        e < 0)
-      return failed(e);
-    if (const int e = alsa.start(feed->pcm_); e < 0) return failed(e);
+    if (const int e = feed->open_card(); e < 0)
+      return failure(ErrorCode::kIo, "sound card {}: {}", source.port, alsa.words(e));
     return std::unique_ptr<Feed>(std::move(feed));
   }
-  ~AlsaFeed() override {
-    if (pcm_) alsa_.close(pcm_);
-  }
+  ~AlsaFeed() override { close_card(); }
 
   void receive(const net::Received& received, int wait_ms) override {
-    const long got = alsa_.read(pcm_, buffer_.data() + filled_, buffer_.size() - filled_);
+    if (!pcm_) look_again();
+    const long got =
+        pcm_ ? alsa_.read(pcm_, buffer_.data() + filled_, buffer_.size() - filled_) : 0;
     if (got < 0 && got != -EAGAIN) {
-      // The queue ran over, or the card was suspended.
-      trouble_ = alsa_.recover(pcm_, static_cast<int>(got), 1) < 0
-                     ? alsa_.words(static_cast<int>(got))
-                     : "";
-      if (trouble_.empty()) (void)alsa_.start(pcm_);
-      ++overruns_;
+      // The queue ran over, the card was suspended, or it was pulled out.
+      if (alsa_.recover(pcm_, static_cast<int>(got), 1) >= 0) {
+        (void)alsa_.start(pcm_);
+        ++overruns_;
+      } else {
+        trouble_ = fmt::format("the card: {}", alsa_.words(static_cast<int>(got)));
+        away_ns_ = now_ns();
+        close_card();
+      }
     }
     if (got > 0) filled_ += static_cast<std::size_t>(got);
     if (filled_ < buffer_.size()) {
@@ -86,13 +83,48 @@ class AlsaFeed final : public Feed {
   std::string trouble() const override { return trouble_; }
 
  private:
-  AlsaFeed(SharedLibrary library, double rate_hz)
+  AlsaFeed(SharedLibrary library, const scene::DeviceSource& source)
       : library_(std::move(library)),
-        buffer_(static_cast<std::size_t>(std::lround(kSoundPacket_s * rate_hz))) {}
+        name_(source.port),
+        rate_hz_(static_cast<unsigned>(std::lround(source.rate_hz))),
+        buffer_(static_cast<std::size_t>(std::lround(kSoundPacket_s * source.rate_hz))) {}
+
+  // ALSA's error, or 0.
+  int open_card() {
+    int error = alsa_.open(&pcm_, name_.c_str(), kCapture, kNonblock);
+    if (error < 0) {
+      pcm_ = nullptr;
+      return error;
+    }
+    error = alsa_.set_params(pcm_, kS16Le, kInterleaved, 1, rate_hz_, 1, kLatency_us);
+    if (error >= 0) error = alsa_.start(pcm_);
+    if (error < 0) close_card();
+    return error;
+  }
+  void close_card() {
+    if (pcm_) alsa_.close(pcm_);
+    pcm_ = nullptr;
+    next_try_ns_ = now_ns() + kCardTryEvery_ns;
+  }
+  // The packets that nobody heard count as lost, and their time goes by.
+  void look_again() {
+    if (now_ns() < next_try_ns_) return;
+    next_try_ns_ = now_ns() + kCardTryEvery_ns;
+    if (open_card() < 0) return;
+    const double away_s = 1e-9 * static_cast<double>(now_ns() - away_ns_);
+    const auto missed = static_cast<std::uint32_t>(std::lround(away_s / kSoundPacket_s));
+    packet_.sequence = static_cast<std::uint16_t>(packet_.sequence + missed);
+    packet_.timestamp += missed * static_cast<std::uint32_t>(buffer_.size());
+    filled_ = 0;
+    trouble_.clear();
+  }
 
   SharedLibrary library_;
   Alsa alsa_;
+  std::string name_;
+  unsigned rate_hz_;
   void* pcm_ = nullptr;
+  TimeNs next_try_ns_ = 0, away_ns_ = 0;
   std::vector<std::int16_t> buffer_;
   std::size_t filled_ = 0;
   net::RtpPacket packet_;
