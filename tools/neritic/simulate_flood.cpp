@@ -22,7 +22,9 @@ using namespace testbed;
 namespace {
 
 constexpr double kFloodSeconds = 60.0;
-constexpr std::size_t kBurst = 100;  // packets at once
+constexpr std::size_t kMostBurst = 100;  // packets at once
+constexpr double kBurst_s = 1e-3;
+constexpr TimeNs kLook_ns = 20'000'000;
 
 // Good packets of a device, each with the next number.
 class PacketMaker {
@@ -73,12 +75,16 @@ struct Target {
 std::uint64_t flood(std::vector<Target>& targets, double rate_hz, const std::atomic<bool>& stop) {
   std::uint64_t sent = 0, made = 0;
   const TimeNs begun_ns = now_ns();
+  const auto burst = static_cast<std::size_t>(
+      std::clamp(kBurst_s * rate_hz, 1.0, static_cast<double>(kMostBurst)));
   std::vector<std::vector<std::byte>> ready;
   while (!stop) {
     const TimeNs due_ns = begun_ns + static_cast<TimeNs>(1e9 * static_cast<double>(made) / rate_hz);
-    if (const TimeNs wait_ns = due_ns - now_ns(); wait_ns > 0)
-      std::this_thread::sleep_for(std::chrono::nanoseconds(wait_ns));
-    for (std::size_t i = 0; i < kBurst; ++i, ++made) {
+    if (const TimeNs wait_ns = due_ns - now_ns(); wait_ns > 0) {
+      std::this_thread::sleep_for(std::chrono::nanoseconds(std::min(wait_ns, kLook_ns)));
+      continue;  // it may be told to stop meanwhile
+    }
+    for (std::size_t i = 0; i < burst; ++i, ++made) {
       // Nine of ten go to the first device, the others in turn.
       Target& target = targets[made % 10 == 0 ? (made / 10) % targets.size() : 0];
       target.link.send(due_ns, target.maker.next());
