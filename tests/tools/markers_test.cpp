@@ -38,10 +38,11 @@ class DiveMarkers : public DivePhysics {
 TEST_F(DiveMarkers, LinesThatComeAreInTheRecordingInTheirOrder) {
   const std::string with_lsl =
       fmt::format("env LD_LIBRARY_PATH={}/tests/fakes/lsl", NERITIC_BINARY_DIR);
-  const Outcome outcome = marked("--record " + file("a.mcap"),
-                                 {"trial begins", R"({"marker": "seen, \"here\""})", "",
-                                  std::string(1025, 'x'), "bad \x01\xff bytes"},
-                                 with_lsl);
+  const Outcome outcome =
+      marked("--record " + file("a.mcap"),
+             {"trial begins", R"({"marker": "seen, \"here\""})", "", std::string(1025, 'x'),
+              "bad \x01\xff bytes", "one of two\r\n\ntwo of two\n"},
+             with_lsl);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find(fmt::format("markers at udp://127.0.0.1:{}: to the recording and Lab "
                                          "Streaming Layer\n",
@@ -58,6 +59,9 @@ TEST_F(DiveMarkers, LinesThatComeAreInTheRecordingInTheirOrder) {
              third = rows.find("bytes");
   EXPECT_TRUE(first != rows.npos && second != rows.npos && third != rows.npos) << rows;
   EXPECT_EQ(rows.find("xxx"), rows.npos);
+  // A line each, without its end, as `echo` and `printf` send them.
+  for (const char* line : {",one of two\n", ",two of two\n"})
+    EXPECT_NE(rows.find(line), rows.npos) << rows;
   // The recording replays: markers move nothing.
   EXPECT_EQ(dive("--headless --replay " + file("a.mcap")).status, 0);
 }

@@ -69,8 +69,17 @@ void Markers::take(net::Bytes bytes, bool cut, std::int64_t stamp_ns, std::int64
              bytes.size(), kMostText);
     return;
   }
-  const std::string text =
-      printable({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, kMostText);
+  std::string_view left(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  while (!left.empty()) {
+    std::string_view line = left.substr(0, left.find('\n'));
+    left.remove_prefix(std::min(line.size() + 1, left.size()));
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (!line.empty()) mark(printable(line, kMostText), stamp_ns, log_ns, waited_ns);
+  }
+}
+
+void Markers::mark(const std::string& text, std::int64_t stamp_ns, std::int64_t log_ns,
+                   TimeNs waited_ns) {
   if (outlet_) outlet_->send(text, waited_ns);
   if (!recording_ || recording_->failed()) return;
   recording::McapOut& out = recording_->out();

@@ -26,6 +26,7 @@ class Markers final : public testbed::StepSink {
   Markers(net::UdpReceiver receiver, testbed::RecordingFile* recording);
   void take(net::Bytes bytes, bool cut, std::int64_t stamp_ns, std::int64_t log_ns,
             TimeNs waited_ns);
+  void mark(const std::string& text, std::int64_t stamp_ns, std::int64_t log_ns, TimeNs waited_ns);
 
   net::UdpReceiver receiver_;
   testbed::RecordingFile* recording_;
