@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "engine/core/ros_frames.hpp"
@@ -22,6 +23,7 @@ Status Receiver::accept(const sim::Snapshot<PhysicsState>& step, std::span<const
   last_step_ = step.step;
   NERITIC_TRY_STATUS(recording.accept(step, outputs));
   receive(outputs, step.scene_from_host_ns());
+  deliver(std::llround(step.time_s * 1e9));
   return {};
 }
 
@@ -37,10 +39,13 @@ void Receiver::receive(std::span<const Sample> outputs, TimeNs shift_ns) {
                     .stamp_ns = header.captured_ns + shift_ns,
                     .arrival_ns = *arrival_ns};
     reading.count = static_cast<std::uint32_t>(ros::write_values(sample.payload, reading.values));
-    if (link.direct())
-      arrive(reading);
-    else
+    if (!link.direct()) {
       readings_.send(*arrival_ns, reading);
+      continue;
+    }
+    // In the order of arrival among all streams, whatever steps a tick has.
+    while (readings_.due(*arrival_ns)) arrive(readings_.take());
+    arrive(reading);
   }
 }
 
@@ -64,10 +69,9 @@ void Receiver::take(WorldImage image) {
   if (!arrival_ns) return;
   image.arrival_ns = *arrival_ns;
   auto kept_image = std::make_unique<WorldImage>(std::move(image));
-  if (link.direct())
-    arrive(std::move(kept_image));
-  else
-    images_.send(*arrival_ns, std::move(kept_image));
+  if (!link.direct()) return images_.send(*arrival_ns, std::move(kept_image));
+  while (images_.due(*arrival_ns)) arrive(images_.take());
+  arrive(std::move(kept_image));
 }
 
 void Receiver::arrive(std::unique_ptr<WorldImage> image) {

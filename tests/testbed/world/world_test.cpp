@@ -262,6 +262,46 @@ TEST_F(WorldTest, DelaysAndLosesOnArrivalAlone) {
   }
 }
 
+TEST_F(WorldTest, ReadingsOfAllStreamsComeInTheOrderOfTheirArrivalInTicksOfAnyLength) {
+  std::vector<std::pair<std::uint32_t, std::uint64_t>> orders[2];
+  for (const std::uint64_t steps : {480, 7}) {
+    const auto world = open();
+    const std::uint32_t imu = world->stream("rov/imu").value();
+    ASSERT_TRUE(world->set_link(imu, {.delay_s = 0.03, .jitter_s = 0.02}).ok());
+    for (const char* name : {"rov/imu", "rov/pressure", "rov/dvl"})
+      ASSERT_TRUE(world->keep(world->stream(name).value(), true).ok());
+    TimeNs last_ns = 0;
+    while (world->step() < 480) {
+      ASSERT_TRUE(world->tick(std::min<std::uint64_t>(steps, 480 - world->step())).ok());
+      for (const Reading& reading : world->take_arrived()) {
+        EXPECT_GE(reading.arrival_ns, last_ns);
+        last_ns = reading.arrival_ns;
+        orders[steps == 7].emplace_back(reading.stream, reading.sequence);
+      }
+    }
+  }
+  EXPECT_GT(orders[0].size(), 300u);
+  EXPECT_EQ(orders[0], orders[1]);
+}
+
+TEST_F(WorldTest, ALongTickCanBeEndedBeforeLateReadingsAreTooMany) {
+  const auto world = open();
+  const std::uint32_t imu = world->stream("rov/imu").value();
+  ASSERT_TRUE(world->set_link(imu, {.delay_s = 0.1}).ok());
+  ASSERT_TRUE(world->keep(imu, true).ok());
+  constexpr std::uint64_t kSteps = 240 * 60;
+  std::size_t came = 0;
+  while (world->step() < kSteps) {
+    ASSERT_TRUE(
+        world
+            ->tick(kSteps - world->step(), [&] { return world->arrived() >= World::kMostKept / 2; })
+            .ok());
+    came += world->take_arrived().size();
+  }
+  EXPECT_EQ(world->dropped(), 0u);
+  EXPECT_GT(came, World::kMostKept);
+}
+
 TEST_F(WorldTest, RefusesInOneLine) {
   const auto world = open();
   const double two[] = {1.0, 2.0};
