@@ -289,17 +289,17 @@ TEST_F(WorldTest, ALongTickCanBeEndedBeforeLateReadingsAreTooMany) {
   const std::uint32_t imu = world->stream("rov/imu").value();
   ASSERT_TRUE(world->set_link(imu, {.delay_s = 0.1}).ok());
   ASSERT_TRUE(world->keep(imu, true).ok());
-  constexpr std::uint64_t kSteps = 240 * 60;
+  constexpr std::uint64_t kSteps = 2400;
+  constexpr std::size_t kMany = 100;
   std::size_t came = 0;
   while (world->step() < kSteps) {
     ASSERT_TRUE(
-        world
-            ->tick(kSteps - world->step(), [&] { return world->arrived() >= World::kMostKept / 2; })
-            .ok());
-    came += world->take_arrived().size();
+        world->tick(kSteps - world->step(), [&] { return world->arrived() >= kMany; }).ok());
+    const std::size_t some = world->take_arrived().size();
+    EXPECT_LE(some, kMany + 1);
+    came += some;
   }
-  EXPECT_EQ(world->dropped(), 0u);
-  EXPECT_GT(came, World::kMostKept);
+  EXPECT_GT(came, 15 * kMany);
 }
 
 TEST_F(WorldTest, RefusesInOneLine) {
