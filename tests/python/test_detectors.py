@@ -1,5 +1,6 @@
 """Detectors of tools/experiment without the program: boxes, crops, training and looking. Exit 77: skipped."""
 import json
+import math
 import os
 import re
 import shutil
@@ -80,6 +81,76 @@ class Crops(unittest.TestCase):
         small = np.zeros((64, 64), bool)
         small[30:40, 30:40] = True  # 100 pixels
         self.assertFalse(crops.visible(light + 50 * small[..., None], small))
+
+    def test_looks_of_the_places_are_each_shipped_diver_and_fish_that_move_where_they_were(self):
+        texts = []
+        world = SimpleNamespace(images=lambda *names: None)
+        tools = SimpleNamespace(write=lambda name, text: texts.append(text), python=lambda: SimpleNamespace(open=lambda path, seed: world))
+        for split in places.SPLITS:
+            for seed in range(3):
+                one, other = (crops.Maker(tools, split, seed, looks=looks) for looks in crops.LOOKS_OF)
+                self.assertEqual((one.water, one.place, one.depth, one.fish_scale), (other.water, other.place, other.depth, other.fish_scale))
+                self.assertEqual(one.rng.random(), other.rng.random())
+            texts.clear()
+            for seed in range(60):
+                crops.Maker(tools, split, seed, looks="places")
+            shown = {name: set() for name in ("diver", "shark", "fish")}
+            for text in texts:
+                for part in text.split("[[objects]]"):
+                    kind = re.search('^class = "(.*)"', part, re.M)
+                    if kind and kind[1] in shown:
+                        found = [re.search(f'^{key} = "(.*)"', part, re.M) for key in ("model", "node", "clip")]
+                        shown[kind[1]].add(tuple(os.path.basename(f[1]) if f else "" for f in found))
+            self.assertEqual(shown["shark"], {("shark.glb", "", "swim")})
+            self.assertEqual(shown["fish"], {(m, n, "swim") for m, n in (("fish.glb", ""), ("school_fish.glb", "snapper"), ("school_fish.glb", "damsel"))})
+            self.assertEqual(shown["diver"], {(f"{m}.glb", "", c) for m in ("diver", "diver_grey", "diver_twin") for c in ("swim", "hover", "cruise", "frog")})
+
+    def test_a_sonar_has_no_looks_of_a_camera(self):
+        with self.assertRaisesRegex(Refused, "looks: found places with eye sonar; accepted: learnt"):
+            detector.check({"eye": "sonar", "looks": "places", "model": "shipped"})
+
+    def test_corners_are_as_dark_as_cos4_of_the_angle_says(self):
+        drawn = [np.array([0.3, -0.5]), 0.25]
+        light = crops.falloff(SimpleNamespace(uniform=lambda *_: drawn.pop(0)), 64, 0.6)
+        middle = np.arctan(np.array([0.3, -0.5]) * np.tan(np.radians([27.5, 40.0])))
+        across = np.arctan((np.arange(64) + 0.5) / 32 * math.tan(0.3) - math.tan(0.3))
+        for row, column in ((0, 0), (63, 0), (10, 50), (32, 32)):
+            up, side = math.tan(middle[0] + across[row]), math.tan(middle[1] + across[column])
+            cosine = np.dot([1, 0, 0], np.array([1, up, side]) / np.linalg.norm([1, up, side]))
+            up, side = math.tan(middle[0] + across[32]), math.tan(middle[1] + across[32])
+            at_middle = np.dot([1, 0, 0], np.array([1, up, side]) / np.linalg.norm([1, up, side]))
+            self.assertAlmostEqual(light[row, column], (cosine / at_middle) ** (4 * 0.25), 9)
+        random = np.random.Generator(np.random.Philox(key=5))
+        for _ in range(50):
+            light = crops.falloff(random, 64, 0.84)
+            self.assertTrue(0.4 < light.min() and light.max() < 1.8, (light.min(), light.max()))
+
+    def test_a_report_shows_a_right_crop_of_each_class_and_the_first_wrong_ones(self):
+        classes = np.array([0, 0, 1, 1, 2, 2, 2])
+        right = np.array([True, True, False, True, False, False, False])
+        self.assertEqual(detector._shown(classes, right), [0, 3, 2, 4, 5])
+        self.assertEqual(detector._shown(classes, right | True), [0, 2, 4])
+
+    def test_a_report_tells_every_scene_and_what_is_wrong_by_water_and_size(self):
+        sys.path.insert(0, os.path.join(TOOLS, "..", "plot"))
+        try:
+            import style
+        except ModuleNotFoundError:
+            self.skipTest("no matplotlib here")
+        finally:
+            sys.path.pop(0)
+        done = [{"seed": seed, "settings": {"eye": "camera"},
+                 "series": {"truth": [0, 1, 4], "told": [0, 1 + (seed < 3), 4], "sure": [0.9, 0.6, 0.99], "size": [0.0, 0.04, 0.2],
+                            "where": "wreck, 3C" if seed < 6 else "garden, IB", "pictures": []}} for seed in range(1, 11)]
+        made = {name: (words, fig) for name, words, fig in detector.figures(None, done, style)}
+        told = [t.get_text() for ax in made["where.png"][1].axes for t in ax.texts]
+        self.assertEqual(told, ["0 of 15", "2 of 15", "2 of 10", "0 of 10"])
+        scenes = [t.get_text() for t in made["crops.png"][1].texts]
+        self.assertEqual((scenes[0], scenes[9], len(scenes)), ("seed 1\nwreck\n3C", "seed 10\ngarden\nIB", 10))
+        for run in done:  # of an older run, or of a sonar
+            del run["series"]["size"]
+        old = {name: fig for name, _, fig in detector.figures(None, done, style)}
+        self.assertEqual(len(old["where.png"].axes), 1)
 
     def test_sonar_pictures_are_64_by_64_whatever_the_bins_and_things_in_noise_are_no_crops(self):
         rng = np.random.Generator(np.random.Philox(key=3))
@@ -195,11 +266,12 @@ class Training(unittest.TestCase):
         np.testing.assert_allclose(answer, look.forward(picture).ravel(), atol=1e-5)
         out = os.path.join(folder, "more")
         asked = SimpleNamespace(name="train_fake", out=out, program="none", runs=10, seed=3, workers=1, quiet=True,
-                                set=[f"from={path}", "steps=2", "draw=5"])
+                                set=[f"from={path}", "steps=2", "draw=5", f"with={path}"])
         self.assertEqual(program.train(asked), 0)
         with open(os.path.join(out, "fake.json")) as file:
-            self.assertIn("--set steps=2 --set draw=5", json.load(file)["made_by"])
-        looking.Detector(os.path.join(out, "fake.onnx"))
+            self.assertIn("--set from=fake.onnx --set steps=2 --set draw=5 --set with=fake.onnx, from the weights of neritic experiment "
+                          "train_fake --runs 10 --seed 3", json.load(file)["made_by"])
+        self.looks_with(program, path, out, asked, picture)
         for text in ("steps=0", "steps=-3", "draw=x", "form=a", "from="):
             with self.assertRaisesRegex(Refused, "accepted: steps=N"):
                 training.settings_of([text], 3, 1)
@@ -211,6 +283,27 @@ class Training(unittest.TestCase):
                 file.write(broken)
             with self.assertRaisesRegex(Refused, "accepted: "):
                 onnx_network.module_of(torch, bad)
+
+
+    def looks_with(self, program, other, both, asked, picture):
+        """Training beside another network ships it too, with the power that makes the mean of both as sure as it is right."""
+        import training
+        self.assertEqual(sorted(os.listdir(both)), ["fake.json", "fake.onnx", "fake_with.json", "fake_with.onnx"])
+        with open(other, "rb") as one, open(os.path.join(both, "fake_with.onnx"), "rb") as same:
+            self.assertEqual(one.read(), same.read())
+        two = looking.Detector(os.path.join(both, "fake.onnx"))
+        self.assertEqual(two.about["with"], ["fake_with.onnx"])
+        alone = looking.Detector(other)
+        own, others = two._own_shares(picture).astype(float), alone.shares(picture)
+        np.testing.assert_allclose(two.shares(picture), (mean := (own + others) ** two.power) / mean.sum(), atol=1e-6)
+        seen = training.gather(program.TRAINED["train_fake"][1], "none", "choose", 3, 3000, 1, False)
+        powers = np.exp(np.linspace(np.log(0.3), np.log(3.0), 60))
+        means = np.stack([two._own_shares(p).astype(float) + alone.shares(p) for p in seen[0]]) / 2
+        loss = [-np.log((means ** p / (means ** p).sum(1, keepdims=True))[np.arange(len(means)), seen[1]]).mean() for p in 1 / powers]
+        self.assertAlmostEqual(two.power, 1 / powers[int(np.argmin(loss))], delta=0.05 * two.power)
+        asked.set = [f"with={both}/fake.onnx", "steps=2"]
+        with self.assertRaisesRegex(Refused, "found with \\['fake_with.onnx'\\].*accepted: a network that looks alone"):
+            program.train(asked)
 
 
 @unittest.skipIf(cv2 is None, "no OpenCV here")

@@ -3,9 +3,11 @@
 A scene is a place, a water, a light and a camera of some opening angle (places.py); in it the diver, the ROV, the shark,
 the fish or nothing stand before the camera in random poses, sizes and places of the crop, some behind a plant or a rock.
 Scenes to learn from have more things that are none of them. Half of these scenes are drawn from wider ranges (WIDE_RANGES),
-with up to three such things in a crop, before and behind. A thing that nobody could name is no crop: one that covers less
-than LEAST_SHARE of it (123 pixels of 64 x 64), or whose pixels differ from the light around them by less than
-LEAST_CONTRAST of 255 levels (rms), three times the noise of the noisiest camera.
+with up to three such things in a crop, before and behind. With the looks of the places, each scene has one of the shipped
+divers, moving by one of their clips, and one kind of the shipped fish, which swims; and a crop is a part of a wider picture with
+dark corners. A thing that nobody could name is no crop: one that covers less than LEAST_SHARE of it (123 pixels of 64 x 64), or
+whose pixels differ from the light around them by less than LEAST_CONTRAST of 255 levels (rms), three times the noise of the
+noisiest camera.
 """
 import math
 import os
@@ -26,6 +28,11 @@ LESSONS = [(20, {"margin": 1.5}), (20, {"margin": 1.5, "wide": True})]
 SCENES, STEPS = 200, 7000  # to learn from; of the training
 RANGES = {"depth_m": (4.0, 25.0), "fov_deg": (14.0, 35.0), "fish_scale": (2.0, 4.0), "fills": (0.35, 1.1), "sight": (0.5, 1.0), "down": 0.2}
 WIDE_RANGES = {"depth_m": (3.0, 30.0), "fov_deg": (12.0, 48.0), "fish_scale": (1.5, 4.5), "fills": (0.3, 1.3), "sight": (0.3, 1.0), "down": 0.3}
+# (model, node, scale that makes it as long as fish.glb). What is drawn of these comes from a generator of its own, APART.
+FISH = [("fish", "", 1.0), ("school_fish", "snapper", 0.77), ("school_fish", "damsel", 1.9)]
+DIVERS, CLIPS = ["diver", "diver_grey", "diver_twin"], ["swim", "hover", "cruise", "frog"]
+APART, LOOKS_OF = 1 << 42, ["learnt", "places"]
+MOST_VIGNETTE, HALF_PICTURE = 0.3, np.radians([27.5, 40.0])  # the scenes' cameras have 0.25 at most; rows, columns
 FAR = [900.0, 900.0, -40.0]
 ASSETS = os.path.normpath(os.path.join(SHIPPED, ".."))
 # Beside plant and rock, in scenes to learn from: three a scene, of these.
@@ -85,11 +92,21 @@ def visible(pixels, its):
     return LEAST_SHARE <= its.mean() <= 0.9 and contrast(pixels, its) >= LEAST_CONTRAST
 
 
+def falloff(random, side, fov):
+    """How bright each pixel [side, side] of a crop is that opens by fov (radians) somewhere in a wider picture, whose corners are
+    dark: cos^4 of the angle off its middle, to a power of at most MOST_VIGNETTE, as a camera's `vignette`. The crop's middle is 1."""
+    off = np.arctan(random.uniform(-1, 1, 2) * np.tan(HALF_PICTURE))
+    across = (np.arange(side) + 0.5) / side * 2 * math.tan(fov / 2) - math.tan(fov / 2)
+    squared = np.add.outer(np.tan(off[0] + np.arctan(across)) ** 2, np.tan(off[1] + np.arctan(across)) ** 2)
+    light = (1 + squared) ** (-2 * random.uniform(0, MOST_VIGNETTE))  # cos^2 = 1 / (1 + tan^2)
+    return light / light[side // 2, side // 2]
+
+
 class Maker:
     """Crops of one seed's scene. tools: as the runner gives them; it belongs to one thread. margin: how much wider than a
-    crop the camera looks, for training to cut crops from."""
+    crop the camera looks, for training to cut crops from. looks: of LOOKS_OF; poses, waters and places are the same with each."""
 
-    def __init__(self, tools, split, seed, side=SIDE, margin=1.0, wide=False):
+    def __init__(self, tools, split, seed, side=SIDE, margin=1.0, wide=False, looks="learnt"):
         first = {"train": 0, "choose": 1 << 41, "test": 1 << 40}[split]
         self.rng = rng = np.random.Generator(np.random.Philox(key=seed + first))
         self.varied, self.ranges = wide, WIDE_RANGES if wide else RANGES
@@ -108,10 +125,17 @@ class Maker:
         self.hides = ["plant", "rock"]
         if split == "train":
             self.hides += [str(name) for name in rng.choice(list(MORE), 4 if wide else 3, replace=False)]
-        swim = '\nclip = "swim"\nclip_rate = 37.3'  # so that a step is another phase of the stroke
-        shown = {"diver": f'model = "{ASSETS}/models/diver.glb"' + swim, "shark": f'model = "{ASSETS}/models/shark.glb"' + swim,
+        self.apart = np.random.Generator(np.random.Philox(key=seed + first + APART))
+        moves = '\nclip = "{}"\nclip_rate = 37.3'  # so that a step is another phase of the stroke
+        diver, clip, (fish, node, longer) = "diver", "swim", ("fish", "", 1.0)
+        self.as_places = looks == "places"
+        if self.as_places:
+            diver, clip, (fish, node, longer) = (of[self.apart.integers(len(of))] for of in (DIVERS, CLIPS, FISH))
+        shown = {"diver": f'model = "{ASSETS}/models/{diver}.glb"' + moves.format(clip),
+                 "shark": f'model = "{ASSETS}/models/shark.glb"' + moves.format("swim"),
                  "rov": f'model = "{ASSETS}/models/rov.glb"',
-                 "fish": f'model = "{ASSETS}/models/fish.glb"\nscale = {self.fish_scale:.3f}',
+                 "fish": f'model = "{ASSETS}/models/{fish}.glb"\nscale = {self.fish_scale * longer:.3f}'
+                         + (moves.format("swim") if self.as_places else "") + (f'\nnode = "{node}"' if node else ""),
                  "plant": f'model = "{ASSETS}/models/kelp.glb"\nscale = 0.5',
                  "rock": f'model = "{ASSETS}/models/rocks.glb"\nnode = "rock_0"\nscale = 0.5'}
         for name in self.hides[2:]:
@@ -133,8 +157,11 @@ class Maker:
         drawn = self.drawn(name)
         if drawn is None:
             return None
-        pixels, _, far = drawn
+        pixels, its, far = drawn
+        self.size = float(its.mean())
         noise, gain = self.rng.uniform(0.5, MOST_NOISE), self.rng.uniform(0.85, 1.15)
+        if self.as_places:
+            gain = gain * falloff(self.apart, self.side, self.fov)[..., None]
         pixels = pixels * gain + self.rng.normal(0.0, noise, pixels.shape)
         return np.clip(np.rint(pixels), 0, 255).astype(np.uint8), far
 
@@ -189,7 +216,15 @@ class Maker:
         return quaternion(rng.uniform(-math.pi, math.pi), down, rng.normal(0, roll))
 
     def some(self, each):
-        return some_of(self.one, CLASSES, each)
+        """As some_of; `sizes` becomes the share of the crop that each thing covers."""
+        self.sizes = []
+
+        def one(name):
+            given = self.one(name)
+            if given is not None:
+                self.sizes.append(self.size)
+            return given
+        return some_of(one, CLASSES, each)
 
 
 def some_of(one, names, each, tries=4):

@@ -5,8 +5,9 @@ Crops come from --runs scenes of the split "train" and are varied anew in each p
 the split "choose", in places that training has not, choose the temperature that makes the shares true
 (Guo et al. 2017). Scenes of the split "test" are never opened here. DIR gets NAME.onnx, NAME.json.
 
---set steps=N, --set draw=N (the seed of weights and variations, where it is not --seed) and --set from=FILE.onnx, weights of
-such a file to go on from, more slowly.
+--set steps=N, --set draw=N (the seed of weights and variations, where it is not --seed), --set from=FILE.onnx, weights of
+such a file to go on from, more slowly, and --set with=FILE.onnx, a network that looks too: DIR gets it as NAME_with, and the
+mean of both becomes as sure as it is right.
 """
 import concurrent.futures
 import concurrent.futures.process
@@ -14,6 +15,7 @@ import copy
 import importlib
 import json
 import os
+import shutil
 import signal
 import tempfile
 
@@ -108,26 +110,27 @@ def _blobs(pictures):
 
 
 def settings_of(sets, steps, seed):
-    """(steps, draw, from or None) of --set."""
-    numbers, start = {"steps": steps, "draw": seed}, None
+    """(steps, draw, from or None, with or None) of --set."""
+    numbers, files = {"steps": steps, "draw": seed}, {"from": None, "with": None}
     for text in sets:
         key, _, value = text.partition("=")
-        if key == "from" and value:
-            start = value
+        if key in files and value:
+            files[key] = value
         elif key in numbers and value.isascii() and value.isdigit() and (key == "draw" or 1 <= int(value)) and int(value) <= 10 ** 7:
             numbers[key] = int(value)
         else:
-            raise Refused(f"--set: found \"{text}\"; accepted: steps=N, draw=N (whole numbers to 10000000), from=FILE.onnx")
-    return numbers["steps"], numbers["draw"], start
+            raise Refused(f"--set: found \"{text}\"; accepted: steps=N, draw=N (whole numbers to 10000000), from=FILE.onnx, with=FILE.onnx")
+    return numbers["steps"], numbers["draw"], files["from"], files["with"]
 
 
-def _going_on(torch, path, classes):
-    about = looking.files_of(path)[1]
+def _read(torch, path, classes):
+    """(the network of a file, its description)"""
+    about = looking.files_of(path, alone=False)[1]
     with open(about, encoding="utf-8") as file:
         told = json.load(file)
     if told.get("classes") != classes or told.get("normalise", "crop") != "crop":
         raise Refused(f"{about}: found classes {told.get('classes')}, normalise {told.get('normalise')}; accepted: {', '.join(classes)}; crop")
-    return onnx_network.module_of(torch, path)
+    return onnx_network.module_of(torch, path), told
 
 
 def train(name, maker, classes, channels, program, scenes, seed, workers, out, quiet, sets=()):
@@ -138,18 +141,26 @@ def train(name, maker, classes, channels, program, scenes, seed, workers, out, q
     scenes = maker.SCENES if scenes is None else scenes
     if scenes < LEAST_SCENES:
         raise Refused(f"--runs: found {scenes}; accepted: {LEAST_SCENES} scenes or more, to learn from")
-    steps, draw, start = settings_of(sets, maker.STEPS, seed)
-    begun = _going_on(torch, start, classes) if start else None
+    steps, draw, start, beside = settings_of(sets, maker.STEPS, seed)
+    begun, before = _read(torch, start, classes) if start else (None, {})
+    other, others = _read(torch, beside, classes) if beside else (None, {})
+    if other and (others.get("with") or not others.get("mirror")):
+        raise Refused(f"--set with={beside}: found with {others.get('with', [])}, mirror {others.get('mirror', False)}; accepted: a "
+                      "network that looks alone, both ways round")
     x, y = gather(maker, program, "train", scenes, 1000 * seed, workers, not quiet)
     xv, yv = gather(maker, program, "choose", max(3, scenes // 10), 1000 * seed, workers, not quiet)
     looks = getattr(maker, "LOOKS", 1)
     if not quiet:
         print(f"{len(y)} crops to learn from, {len(yv)} to choose by: {np.bincount(y, minlength=len(classes)).tolist()}", flush=True)
-    net, best, power = fit(torch, _apart(x, y, looks), _apart(xv, yv, looks), channels, classes, steps, draw, quiet, begun, looks)
+    net, best, power = fit(torch, _apart(x, y, looks), _apart(xv, yv, looks), channels, classes, steps, draw, quiet, begun, looks, other)
+    bare = [s.split("=", 1)[0] + "=" + os.path.basename(s.split("=", 1)[1]) for s in sets]  # files without their folders
+    made_by = " ".join([f"neritic experiment train_{name} --runs {scenes} --seed {seed}", *(f"--set {s}" for s in bare)])
     about = {"kind": "classifier", "classes": classes, "side": 64, "channels": channels, "normalise": "crop", "mirror": True,
-             **({"looks": looks, "power": round(power, 3)} if looks > 1 else {}),
-             "made_by": " ".join([f"neritic experiment train_{name} --runs {scenes} --seed {seed}", *(f"--set {s}" for s in sets)]),
-             "share_of_crops_to_choose_by": round(best, 4)}
+             **({"looks": looks} if looks > 1 else {}), **({"power": round(power, 3)} if looks > 1 or other else {}),
+             "made_by": made_by + (f", from the weights of {before.get('made_by', 'another program')}" if begun else ""),
+             "share_of_crops_to_choose_by": round(best, 4), **({"with": [name + "_with.onnx"]} if other else {})}
+    if other:
+        _beside(beside, os.path.join(out, name + "_with.onnx"))
     _export(torch, torch.nn.Sequential(net, torch.nn.Softmax(1)).eval(), name, about, out)
     return best
 
@@ -159,9 +170,9 @@ def _apart(pictures, classes, looks):
     return (pictures.reshape(-1, *pictures.shape[2:]), np.repeat(classes, looks)) if looks > 1 else (pictures, classes)
 
 
-def fit(torch, lessons, chosen_by, channels, classes, steps, seed, quiet, start=None, looks=1):
-    """start: a network to go on from. Returns (network of calibrated logits, share of the crops to choose by that it names
-    rightly by so many looks, the power that makes their mean as sure as it is right)."""
+def fit(torch, lessons, chosen_by, channels, classes, steps, seed, quiet, start=None, looks=1, other=None):
+    """start: a network to go on from. other: one that looks too. Returns (network of calibrated logits, share of the crops to
+    choose by that they name rightly by so many looks, the power that makes their mean as sure as it is right)."""
     torch.manual_seed(seed)
     torch.set_num_threads(THREADS)
     torch.use_deterministic_algorithms(True)
@@ -174,7 +185,10 @@ def fit(torch, lessons, chosen_by, channels, classes, steps, seed, quiet, start=
     with torch.no_grad():  # into the last layer, so that the file's shares are calibrated
         net.last.weight /= temperature
         net.last.bias /= temperature
-    shares, of = _shares(logits / temperature).reshape(-1, looks, len(classes)).mean(1), seen[1][::looks]
+    shares, of = _shares(logits / temperature), seen[1][::looks]
+    if other:
+        shares = (shares + _shares(_logits(torch, other, seen[0]))) / 2
+    shares = shares.reshape(-1, looks, len(classes)).mean(1)
     return net, float((shares.argmax(1) == of).float().mean()), 1 / _temperature(torch, shares.log()[None], of)
 
 
@@ -235,6 +249,14 @@ def _temperature(torch, logits, y):
     """By which the logits are divided for the least cross entropy: a search over 0.3 to 3."""
     tried = np.exp(np.linspace(np.log(0.3), np.log(3.0), 60))
     return float(min(tried, key=lambda t: float(torch.nn.functional.nll_loss(_shares(logits / t).log(), y))))
+
+
+def _beside(path, at):
+    """Copies a network's both files, where they are not there already."""
+    for one, there in zip(looking.files_of(path, alone=False), (at, os.path.splitext(at)[0] + ".json")):
+        if not (os.path.exists(there) and os.path.samefile(one, there)):
+            shutil.copyfile(one, there + ".tmp")
+            os.replace(there + ".tmp", there)
 
 
 def _export(torch, model, name, about, out):
