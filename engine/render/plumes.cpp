@@ -183,8 +183,8 @@ void add_bubbles(const scene::MotionSource& motion, const scene::BubbleSource& s
     const double breath_s = first_s + period_s * static_cast<double>(breath);
     for (std::size_t i = 0; i < places.size(); ++i) {
       const auto place_at = [&](double gulp) {
-        return motion.world_from_object(static_cast<std::size_t>(source.object),
-                                        breath_s + out_s * gulp / gulps) *
+        return motion.world_from_joint(static_cast<std::size_t>(source.object), source.joint,
+                                       breath_s + out_s * gulp / gulps) *
                source.position_m;
       };
       places[i] = {place_at(double(i)), place_at(double(i) + share),
@@ -237,7 +237,7 @@ void add_silt(const scene::MotionSource& motion, const scene::SiltSource& source
               std::vector<WorldParticle>& out) {
   const auto object = static_cast<std::size_t>(source.object);
   const auto place_at = [&](double t_s) {
-    return motion.world_from_object(object, t_s) * source.position_m;
+    return motion.world_from_joint(object, source.joint, t_s) * source.position_m;
   };
   const double life_s = 2.0 * source.hang_s;
   const auto last = static_cast<std::int64_t>(std::floor(time_s / kPuffEvery_s));

@@ -100,8 +100,11 @@ std::vector<std::uint8_t> moving_objects(const scene::Scene& scene) {
     for (std::size_t steps = 0; at && steps <= scene.objects.size(); ++steps) {
       moves |=
           at->mount.track || at->mount.afloat || at->dynamics || at->human || !at->inputs.empty();
-      at = at->mount.object >= 0 ? &scene.objects[static_cast<std::size_t>(at->mount.object)]
-                                 : nullptr;
+      const scene::Object* by = at->mount.object >= 0
+                                    ? &scene.objects[static_cast<std::size_t>(at->mount.object)]
+                                    : nullptr;
+      moves |= by && at->mount.joint >= 0 && by->clip >= 0;
+      at = by;
     }
     out.push_back(moves ? 1 : 0);
   }

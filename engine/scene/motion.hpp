@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -40,6 +41,11 @@ class SimulatedMotion {
                                               double time_s) const = 0;
 };
 
+// Object_from_joint: where a node of the object's model is in a pose of that model, without the
+// node's scale; scale: the object's. A part that is not worn has no axes of its own (its scale is
+// 0): it has the object's.
+Pose object_from_joint(const ModelPose& pose, int node, const Vec3& scale);
+
 // A thing with what carries it, copied out of a scene that need not stay: where it is, as the
 // scene's MotionSource says it.
 class CarriedThing {
@@ -48,7 +54,15 @@ class CarriedThing {
   MotionAt at(double time_s, const SimulatedMotion* simulated) const;
 
  private:
-  std::vector<Mount> chain_;  // itself first; each is mounted on the object whose mount follows
+  // Itself first; each is mounted on the object that follows.
+  struct Link {
+    Mount mount;
+    std::shared_ptr<const Model> model = nullptr;  // where something hangs on a joint of it
+    int clip = -1;
+    double clip_offset_s = 0.0, clip_rate = 1.0;
+    Vec3 scale{1.0};
+  };
+  std::vector<Link> chain_;
 };
 
 class MotionSource {
@@ -62,6 +76,8 @@ class MotionSource {
   Pose world_from(const Mount& mount, double time_s) const { return at(mount, time_s).motion.pose; }
   MotionAt at(const Mount& mount, double time_s) const;
   Pose world_from_object(std::size_t object, double time_s) const;
+  // Of a node of the object's model; joint -1: of the object.
+  Pose world_from_joint(std::size_t object, int joint, double time_s) const;
   ModelPose model_pose(std::size_t object, const Model& model, double time_s) const;
 
  private:

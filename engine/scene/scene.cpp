@@ -157,11 +157,11 @@ Mat4 Scene::world_from_copy(const Object& object, std::size_t copy, double time_
 Result<Scene> load_scene(const std::filesystem::path& path, const SceneOptions& options) {
   NERITIC_TRY(const SceneSource source, read_scene_source(path, options.text, options.added));
   NERITIC_TRY(SceneDraft draft, read_draft(source));
-  NERITIC_TRY_STATUS(place_all(draft));
   NERITIC_TRY(LoadedModels loaded, load_models(draft.requests));
   for (ObjectDraft& object : draft.objects)
     if (object.request) object.object.model = loaded.model_of_request[*object.request];
   NERITIC_TRY_STATUS(find_clips(draft, loaded.models));
+  NERITIC_TRY_STATUS(place_all(draft, loaded.models));
   NERITIC_TRY_STATUS(scatter_all(draft, loaded.models));
   NERITIC_TRY_STATUS(number_instances(draft));
   move_out(draft, options.offset_m);

@@ -52,6 +52,7 @@ struct Mount {
   Pose pose;                                       // of what moves: at time 0
   std::optional<Track> track = {};                 // absent: it stands still there
   std::shared_ptr<const Afloat> afloat = nullptr;  // null: no waves move it; in the world alone
+  int joint = -1;  // node of the object's model, as it is posed; -1: the object's origin
   Pose pose_at(double time_s) const { return track ? scene::pose_at(*track, time_s) : pose; }
 };
 

@@ -27,8 +27,9 @@ struct PlacementDraft {
   Pose pose;  // of what moves: at time 0
   std::optional<TrackDraft> track;
   std::string on, look_at;  // names of objects; empty: none
+  std::string joint;        // name of a node of on's model; empty: its origin
   std::optional<Vec3> look_at_m;
-  std::string place_on, place_look_at;
+  std::string place_on, place_joint, place_look_at;
 };
 
 struct Look {
@@ -168,8 +169,16 @@ Result<LoadedModels> load_models(const std::vector<ModelRequest>& requests);
 // scene_node.cpp: the model that draws only that node and what hangs below it.
 Result<Model> model_of_node(const Model& model, const std::string& node);
 
-// scene_place.cpp: names to indices, look_at to rotations.
-Status place_all(SceneDraft& draft);
+// scene_place.cpp: names to indices, look_at to rotations. Needs models and clips.
+Status place_all(SceneDraft& draft, const std::vector<std::shared_ptr<const Model>>& models);
+// A node of the object's model, by name; place: of the name, for errors.
+Result<int> find_joint(const Object& object,
+                       const std::vector<std::shared_ptr<const Model>>& models,
+                       const std::string& name, const std::string& place);
+// World pose at time 0 of what hangs on that mount's object, and there on its joint.
+Pose world_from_carrier(const SceneDraft& draft,
+                        const std::vector<std::shared_ptr<const Model>>& models,
+                        const Mount& mount);
 
 // scene_scatter.cpp: fills the copies of objects that are scattered. Needs placed objects.
 Status scatter_all(SceneDraft& draft, const std::vector<std::shared_ptr<const Model>>& models);

@@ -41,10 +41,10 @@ inline constexpr auto kSnowKeys = std::to_array<Key>(
 inline constexpr auto kWavesKeys =
     std::to_array<Key>({"wind_m_s", "fetch_km", "direction_deg", "components", "seed", "moves"});
 inline constexpr auto kMurkKeys = std::to_array<Key>({"bed_depth_m", "thickness_m", "factor"});
-inline constexpr auto kBubbleKeys =
-    std::to_array<Key>({"on", "position_m", "breath_s", "flow_l_min", "diameter_mm", "height_m"});
+inline constexpr auto kBubbleKeys = std::to_array<Key>(
+    {"on", "joint", "position_m", "breath_s", "flow_l_min", "diameter_mm", "height_m"});
 inline constexpr auto kSiltKeys =
-    std::to_array<Key>({"on", "position_m", "bed_depth_m", "reach_m", "hang_s"});
+    std::to_array<Key>({"on", "joint", "position_m", "bed_depth_m", "reach_m", "hang_s"});
 
 // Keys of [[objects]] and [[vehicles]].
 inline constexpr auto kObjectKeys = std::to_array<Key>({"name",
@@ -81,6 +81,7 @@ inline constexpr auto kObjectKeys = std::to_array<Key>({"name",
                                                         "look_at_m",
                                                         "look_at",
                                                         "on",
+                                                        "joint",
                                                         "scale",
                                                         "clip",
                                                         "clip_offset_s",
@@ -172,38 +173,18 @@ inline constexpr auto kAfloatKeys = std::to_array<Key>({"length_m", "breadth_m"}
 inline constexpr auto kScatterKeys =
     std::to_array<Key>({"count", "seed", "area_m", "on", "scale", "align", "sink_m", "keep_out_m"});
 
-inline constexpr auto kCameraKeys = std::to_array<Key>({"name",
-                                                        "include",
-                                                        "on",
-                                                        "track",
-                                                        "position_m",
-                                                        "yaw_deg",
-                                                        "pitch_deg",
-                                                        "roll_deg",
-                                                        "rotation_xyzw",
-                                                        "look_at_m",
-                                                        "look_at",
-                                                        "width",
-                                                        "height",
-                                                        "fov_deg",
-                                                        "near_m",
-                                                        "rate_hz",
-                                                        "stereo_baseline_m",
-                                                        "antialias",
-                                                        "exposure",
-                                                        "exposure_compensation_ev",
-                                                        "quality",
-                                                        "max_error",
-                                                        "detail",
-                                                        "lens",
-                                                        "port",
-                                                        "focus",
-                                                        "shutter",
-                                                        "sensor",
-                                                        "white_balance",
-                                                        "vignette",
-                                                        "linear",
-                                                        "spectrum"});
+inline constexpr auto kCameraKeys =
+    std::to_array<Key>({"name",          "include",   "on",
+                        "joint",         "track",     "position_m",
+                        "yaw_deg",       "pitch_deg", "roll_deg",
+                        "rotation_xyzw", "look_at_m", "look_at",
+                        "width",         "height",    "fov_deg",
+                        "near_m",        "rate_hz",   "stereo_baseline_m",
+                        "antialias",     "exposure",  "exposure_compensation_ev",
+                        "quality",       "max_error", "detail",
+                        "lens",          "port",      "focus",
+                        "shutter",       "sensor",    "white_balance",
+                        "vignette",      "linear",    "spectrum"});
 inline constexpr auto kDetailKeys =
     std::to_array<Key>({"resolution", "shadow_size", "cascades", "shadow_samples",
                         "visibility_step", "occlusion_samples", "inscatter_samples", "waves",
@@ -217,15 +198,21 @@ inline constexpr auto kSpectrumKeys = std::to_array<Key>({"bands", "response"});
 inline constexpr auto kImageSensorKeys = std::to_array<Key>(
     {"gain_db", "full_well_e", "read_noise_e", "saturation_ev", "bits", "bayer"});
 
-inline constexpr auto kSonarKeys = std::to_array<Key>(
-    {"name",           "include",        "on",           "track",         "position_m",
-     "yaw_deg",        "pitch_deg",      "roll_deg",     "rotation_xyzw", "look_at_m",
-     "look_at",        "kind",           "range_m",      "azimuth_deg",   "elevation_deg",
-     "semi_angle_deg", "depression_deg", "step_deg",     "bins",          "rate_hz",
-     "gbuffer_scale",  "gather",         "near_m",       "quality",       "max_error",
-     "picture_camera", "frequency_hz",   "bandwidth_hz", "water",         "level",
-     "beam",           "range_spread",   "speckle",      "noise",         "ghosts",
-     "sound_speed",    "motion",         "labels",       "output",        "detection"});
+inline constexpr auto kSonarKeys =
+    std::to_array<Key>({"name",          "include",        "on",
+                        "joint",         "track",          "position_m",
+                        "yaw_deg",       "pitch_deg",      "roll_deg",
+                        "rotation_xyzw", "look_at_m",      "look_at",
+                        "kind",          "range_m",        "azimuth_deg",
+                        "elevation_deg", "semi_angle_deg", "depression_deg",
+                        "step_deg",      "bins",           "rate_hz",
+                        "gbuffer_scale", "gather",         "near_m",
+                        "quality",       "max_error",      "picture_camera",
+                        "frequency_hz",  "bandwidth_hz",   "water",
+                        "level",         "beam",           "range_spread",
+                        "speckle",       "noise",          "ghosts",
+                        "sound_speed",   "motion",         "labels",
+                        "output",        "detection"});
 
 // The terms of a sonar, each a table.
 inline constexpr auto kSonarWaterKeys =
@@ -265,12 +252,27 @@ inline constexpr auto kSonarTables =
                              {"detection", kSonarDetectionKeys},
                              {"output", kSonarOutputKeys}});
 
-inline constexpr auto kLampKeys =
-    std::to_array<Key>({"name",          "include",      "on",        "track",
-                        "position_m",    "yaw_deg",      "pitch_deg", "roll_deg",
-                        "rotation_xyzw", "look_at_m",    "look_at",   "color",
-                        "temperature_k", "intensity_cd", "cone_deg",  "half_intensity_deg",
-                        "profile",       "flux_lm",      "shadows",   "shadow_size",
-                        "strobe_s"});
+inline constexpr auto kLampKeys = std::to_array<Key>({"name",
+                                                      "include",
+                                                      "on",
+                                                      "joint",
+                                                      "track",
+                                                      "position_m",
+                                                      "yaw_deg",
+                                                      "pitch_deg",
+                                                      "roll_deg",
+                                                      "rotation_xyzw",
+                                                      "look_at_m",
+                                                      "look_at",
+                                                      "color",
+                                                      "temperature_k",
+                                                      "intensity_cd",
+                                                      "cone_deg",
+                                                      "half_intensity_deg",
+                                                      "profile",
+                                                      "flux_lm",
+                                                      "shadows",
+                                                      "shadow_size",
+                                                      "strobe_s"});
 
 }  // namespace neritic::scene

@@ -6,6 +6,7 @@
 
 #include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
+#include "engine/scene/motion.hpp"
 #include "engine/scene/scene_draft.hpp"
 
 namespace neritic::scene {
@@ -13,7 +14,8 @@ namespace {
 
 class Placer {
  public:
-  explicit Placer(SceneDraft& draft) : draft_(draft) {}
+  Placer(SceneDraft& draft, const std::vector<std::shared_ptr<const Model>>& models)
+      : draft_(draft), models_(models) {}
 
   Status place() {
     for (std::size_t i = 0; i < draft_.objects.size(); ++i) {
@@ -24,7 +26,7 @@ class Placer {
     }
     NERITIC_TRY_STATUS(check_sensor_names());
     for (ObjectDraft& object : draft_.objects) {
-      NERITIC_TRY(object.object.mount.object, find(object.placement.on, object.placement.place_on));
+      NERITIC_TRY_STATUS(hang(object.placement, object.object.mount));
     }
     pose_state_.assign(draft_.objects.size(), State::kOpen);
     for (std::size_t i = 0; i < draft_.objects.size(); ++i) NERITIC_TRY_STATUS(settle(i));
@@ -81,12 +83,13 @@ class Placer {
 
   Mount& mount_of(std::size_t i) { return draft_.objects[i].object.mount; }
 
-  // World pose of an object whose own rotation and parents are settled.
-  Pose world_pose(int object) {
-    Pose pose;
-    for (; object >= 0; object = mount_of(static_cast<std::size_t>(object)).object)
-      pose = mount_of(static_cast<std::size_t>(object)).pose * pose;
-    return pose;
+  // On which object, and on which of its joints.
+  Status hang(const PlacementDraft& placement, Mount& mount) const {
+    NERITIC_TRY(mount.object, find(placement.on, placement.place_on));
+    if (placement.joint.empty()) return {};
+    const Object& carrier = draft_.objects[static_cast<std::size_t>(mount.object)].object;
+    NERITIC_TRY(mount.joint, find_joint(carrier, models_, placement.joint, placement.place_joint));
+    return {};
   }
 
   // Settles the object's parent: then its position in the world is known.
@@ -114,15 +117,15 @@ class Placer {
   }
 
   // The placement's pose in its parent's frame. The parent is settled.
-  Result<Pose> resolve(const PlacementDraft& placement, int parent) {
+  Result<Pose> resolve(const PlacementDraft& placement, const Mount& mount) {
     if (placement.look_at_m) return look_at(placement.pose.position_m, *placement.look_at_m);
     if (placement.look_at.empty()) return placement.pose;
     NERITIC_TRY(const int target, find(placement.look_at, placement.place_look_at));
     const auto target_index = static_cast<std::size_t>(target);
     NERITIC_TRY_STATUS(settle_parent(target_index));
-    const Vec3 target_in_world = world_pose(mount_of(target_index).object) *
+    const Vec3 target_in_world = world_from_carrier(draft_, models_, mount_of(target_index)) *
                                  draft_.objects[target_index].placement.pose.position_m;
-    const Vec3 target_m = inverse(world_pose(parent)) * target_in_world;
+    const Vec3 target_m = inverse(world_from_carrier(draft_, models_, mount)) * target_in_world;
     if (target_m == placement.pose.position_m)
       return refusal(placement.place_look_at,
                      fmt::format("{} at the place from which it is looked at", placement.look_at),
@@ -132,7 +135,7 @@ class Placer {
 
   // Gives a mount whose parent is settled its pose and, where it moves, its track.
   Status put(const PlacementDraft& placement, Mount& mount) {
-    NERITIC_TRY(mount.pose, resolve(placement, mount.object));
+    NERITIC_TRY(mount.pose, resolve(placement, mount));
     if (!placement.track) return {};
     mount.track = make_track(*placement.track, mount.pose.rotation);
     mount.pose = mount.pose_at(0.0);
@@ -140,12 +143,13 @@ class Placer {
   }
 
   Status place_sensor(const PlacementDraft& placement, Mount& mount) {
-    NERITIC_TRY(mount.object, find(placement.on, placement.place_on));
+    NERITIC_TRY_STATUS(hang(placement, mount));
     return put(placement, mount);
   }
 
   static constexpr int kMaxDepth = 64;
   SceneDraft& draft_;
+  const std::vector<std::shared_ptr<const Model>>& models_;
   std::map<std::string, int> index_;
   std::vector<std::string_view> names_;
   std::vector<State> pose_state_;
@@ -154,8 +158,46 @@ class Placer {
 
 }  // namespace
 
-Status place_all(SceneDraft& draft) {
-  return Placer(draft).place();
+Result<int> find_joint(const Object& object,
+                       const std::vector<std::shared_ptr<const Model>>& models,
+                       const std::string& name, const std::string& place) {
+  const std::string found = fmt::format("\"{}\"", printable(name));
+  if (object.model < 0 || object.instance_count() > 1)
+    return refusal(place, fmt::format("{} of {}", found, object.name),
+                   "a node of an object that is drawn once");
+  const Model& model = *models[static_cast<std::size_t>(object.model)];
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    if (model.nodes[i].name == name) return static_cast<int>(i);
+    names.push_back(model.nodes[i].name);
+  }
+  return refusal(place, found,
+                 fmt::format("a node of {}'s model{}", object.name,
+                             names.empty() ? std::string()
+                                           : fmt::format(" (nearest: \"{}\")",
+                                                         printable(nearest(name, names)))));
+}
+
+Pose world_from_carrier(const SceneDraft& draft,
+                        const std::vector<std::shared_ptr<const Model>>& models,
+                        const Mount& mount) {
+  Pose pose;
+  for (const Mount* at = &mount; at->object >= 0;) {
+    const Object& carrier = draft.objects[static_cast<std::size_t>(at->object)].object;
+    if (at->joint >= 0) {
+      const Model& model = *models[static_cast<std::size_t>(carrier.model)];
+      pose = object_from_joint(evaluate_pose(model, carrier.clip, carrier.clip_offset_s), at->joint,
+                               carrier.scale) *
+             pose;
+    }
+    pose = carrier.mount.pose * pose;
+    at = &carrier.mount;
+  }
+  return pose;
+}
+
+Status place_all(SceneDraft& draft, const std::vector<std::shared_ptr<const Model>>& models) {
+  return Placer(draft, models).place();
 }
 
 }  // namespace neritic::scene

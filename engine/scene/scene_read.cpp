@@ -107,6 +107,9 @@ PlacementDraft read_placement(TableReader& reader, const std::string& default_on
   read_rotation(reader, placement);
   placement.on = reader.text("on", default_on);
   placement.place_on = reader.place("on");
+  placement.joint = reader.text("joint", "");
+  placement.place_joint = reader.place("joint");
+  if (reader.has("joint") && placement.on.empty()) reader.refuse("joint", "beside on");
   if (reader.has("look_at_m"))
     placement.look_at_m = reader.vector3("look_at_m", Vec3(0.0), kAnyMetres);
   placement.look_at = reader.text("look_at", "");

@@ -58,6 +58,8 @@ BubbleSource read_bubbles(TableReader& reader) {
   out.on = reader.text("on", "");
   out.place = reader.place("on");
   if (out.on.empty()) reader.refuse("on", "the name of an object");
+  out.joint_name = reader.text("joint", "");
+  out.place_joint = reader.place("joint");
   out.position_m = reader.vector3("position_m", Vec3(0.0), kAnyMetres);
   out.breath_s = reader.number("breath_s", out.breath_s, {0, 120, false, false, "seconds"});
   out.flow_m3_s =
@@ -74,6 +76,8 @@ SiltSource read_silt(TableReader& reader) {
   out.on = reader.text("on", "");
   out.place = reader.place("on");
   if (out.on.empty()) reader.refuse("on", "the name of an object");
+  out.joint_name = reader.text("joint", "");
+  out.place_joint = reader.place("joint");
   out.position_m = reader.vector3("position_m", Vec3(0.0), kAnyMetres);
   if (!reader.has("bed_depth_m")) reader.refuse_table("no bed_depth_m", "bed_depth_m, in metres");
   out.bed_depth_m = reader.number("bed_depth_m", 0.0, kBedDepth);
@@ -207,6 +211,9 @@ Status resolve_water_sources(Scene& scene) {
       if (source.object < 0)
         return refusal(source.place, fmt::format("\"{}\"", source.on),
                        "the name of an object of the scene");
+      if (source.joint_name.empty()) continue;
+      NERITIC_TRY(source.joint, find_joint(scene.objects[static_cast<std::size_t>(source.object)],
+                                           scene.models, source.joint_name, source.place_joint));
     }
     return {};
   };

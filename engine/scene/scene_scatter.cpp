@@ -59,17 +59,12 @@ std::uint64_t stream_of(const std::string& name) {
   return hash.value();
 }
 
-Pose world_pose(const SceneDraft& draft, int object) {
-  Pose pose;
-  for (; object >= 0; object = draft.objects[static_cast<std::size_t>(object)].object.mount.object)
-    pose = draft.objects[static_cast<std::size_t>(object)].object.mount.pose * pose;
-  return pose;
-}
-
 // Where the copies of an object stand in the world.
-std::vector<Mat4> world_from_models(const SceneDraft& draft, int index) {
+std::vector<Mat4> world_from_models(const SceneDraft& draft,
+                                    const std::vector<std::shared_ptr<const Model>>& models,
+                                    int index) {
   const Object& object = draft.objects[static_cast<std::size_t>(index)].object;
-  const Mat4 world_from_object = to_matrix(world_pose(draft, index));
+  const Mat4 world_from_object = to_matrix(world_from_carrier(draft, models, {.object = index}));
   std::vector<Mat4> out;
   if (object.copies.empty()) out.push_back(glm::scale(world_from_object, object.scale));
   for (const Mat4& copy : object.copies)
@@ -96,7 +91,8 @@ Status scatter_all(SceneDraft& draft, const std::vector<std::shared_ptr<const Mo
       auto at = surfaces.find(scatter.on);
       if (at == surfaces.end()) {
         const auto model = static_cast<std::size_t>(ground->object.model);
-        at = surfaces.try_emplace(scatter.on, *models[model], world_from_models(draft, on)).first;
+        at = surfaces.try_emplace(scatter.on, *models[model], world_from_models(draft, models, on))
+                 .first;
       }
       surface = &at->second;
     }

@@ -30,9 +30,11 @@ struct Snow {
 
 // Gas that rises from a place of an object.
 struct BubbleSource {
-  int object = -1;            // index into Scene::objects
-  std::string on, place;      // its name, and where the file names it
-  Vec3 position_m{0.0};       // in the object's frame
+  int object = -1;        // index into Scene::objects
+  std::string on, place;  // its name, and where the file names it
+  int joint = -1;         // node of its model; -1: the object's origin
+  std::string joint_name, place_joint;
+  Vec3 position_m{0.0};       // in the object's frame, or the joint's
   double breath_s = 4.5;      // 0: a leak, without pauses
   double flow_m3_s = 2.5e-4;  // at the source's depth, mean (15 litres a minute)
   double median_radius_m = 5e-3;
@@ -43,6 +45,8 @@ struct BubbleSource {
 struct SiltSource {
   int object = -1;
   std::string on, place;
+  int joint = -1;
+  std::string joint_name, place_joint;
   Vec3 position_m{0.0};
   double bed_depth_m = 0.0;
   double reach_m = 1.0;  // of the wash, above the bed

@@ -105,6 +105,7 @@ class SceneHash {
 
   void add(const scene::Mount& mount) {
     numbers(mount.object);
+    if (mount.joint >= 0) text("joint"), numbers(mount.joint);
     vec(mount.pose.position_m), quat(mount.pose.rotation);
     if (mount.afloat) {
       text("afloat");

@@ -176,8 +176,9 @@ bool stands_still(const scene::Scene& scene, const scene::Object& object) {
   if (object.mount.track || object.mount.afloat || object.dynamics || object.human ||
       !object.inputs.empty())
     return false;
-  return object.mount.object < 0 ||
-         stands_still(scene, scene.objects[static_cast<std::size_t>(object.mount.object)]);
+  if (object.mount.object < 0) return true;
+  const scene::Object& by = scene.objects[static_cast<std::size_t>(object.mount.object)];
+  return (object.mount.joint < 0 || by.clip < 0) && stands_still(scene, by);
 }
 
 std::vector<Vec3> rest_points(const scene::Model& model, const Vec3& scale) {

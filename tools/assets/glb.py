@@ -75,6 +75,12 @@ class Glb:
         d.setdefault("textures", []).append({"sampler": 0 if name.endswith("_color") else 1, "source": len(d["images"]) - 1, "name": name})
         return len(d["textures"]) - 1
 
+    def extend(self, m, name, value):
+        m.setdefault("extensions", {})[name] = value
+        used = self.doc.setdefault("extensionsUsed", [])
+        if name not in used:
+            used.append(name)
+
     def material(
         self,
         name,
@@ -86,6 +92,7 @@ class Glb:
         normal=None,
         normal_scale=1.0,
         emissive=None,
+        strength=1.0,
         double=False,
         mask=None,
         blend=False,
@@ -101,6 +108,8 @@ class Glb:
             m["normalTexture"] = {"index": normal, "scale": normal_scale}
         if emissive is not None:
             m["emissiveFactor"] = list(emissive)
+        if strength != 1.0:  # how many times white the emission is
+            self.extend(m, "KHR_materials_emissive_strength", {"emissiveStrength": strength})
         if double:
             m["doubleSided"] = True
         if mask is not None:
@@ -108,10 +117,7 @@ class Glb:
         if blend:
             m["alphaMode"] = "BLEND"
         if thin is not None:  # the share of diffuse light that goes through
-            m["extensions"] = {"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": thin}}
-            used = self.doc.setdefault("extensionsUsed", [])
-            if "KHR_materials_diffuse_transmission" not in used:
-                used.append("KHR_materials_diffuse_transmission")
+            self.extend(m, "KHR_materials_diffuse_transmission", {"diffuseTransmissionFactor": thin})
         self.doc["materials"].append(m)
         return len(self.doc["materials"]) - 1
 
