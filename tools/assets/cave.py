@@ -1,7 +1,8 @@
-"""A sea cave to swim into: cave.glb, rock seen from inside, mouth at z = +9 towards the sea.
+"""A sea cave to swim into: cave.glb, rock seen from inside and from the sea, mouth at z = +9.
 
 The floor lies near y = 0; the tunnel winds from the mouth 22 m into the rock and rises to a chamber.
-Stalactites hang from the roof. Origin: on the floor, in the middle.
+At the mouth the rock turns outwards into a cliff, and the floor goes on as a bed of sand. Stalactites hang
+from the roof. Origin: on the floor, in the middle.
 """
 from pathlib import Path
 
@@ -15,6 +16,12 @@ from shapes import tube
 
 OUT = Path(__file__).resolve().parents[2] / "assets" / "models"
 WALL_TILE = 3.0  # metres that the texture covers
+MOUTH = -0.02  # line()'s s at the edge of the cliff
+# Beds and joints dip: no block stands square to the tunnel.
+DIP, STRIKE = np.radians(24), np.radians(33)
+TILTED = np.array([[np.cos(STRIKE), 0, np.sin(STRIKE)], [0, 1, 0], [-np.sin(STRIKE), 0, np.cos(STRIKE)]]) @ np.array(
+    [[np.cos(DIP), -np.sin(DIP), 0], [np.sin(DIP), np.cos(DIP), 0], [0, 0, 1]]
+)
 
 
 def line(s):
@@ -29,7 +36,7 @@ def line(s):
 
 def joints(p, seed, size, step, tilt, soft):
     """How far broken blocks stand out at points p (m): blocks of about this size, each a plane of its own step and tilt."""
-    p = p + 0.22 * size * np.column_stack([N.fbm3(p, seed + k, 1.3 / size, 2) for k in range(3)])
+    p = p @ TILTED + 0.30 * size * np.column_stack([N.fbm3(p, seed + k, 1.3 / size, 2) for k in range(3)])
     cell = np.floor(p / size).astype(int)
     weight, out = np.zeros(len(p)), np.zeros(len(p))
     for dx in (-1, 0, 1):
@@ -49,25 +56,57 @@ def joints(p, seed, size, step, tilt, soft):
     return out / weight
 
 
+def section(s, ang):
+    """The tunnel's smooth outline at s."""
+    at, wide, high = line(s)
+    c, d = np.cos(ang), np.sin(ang)
+    return np.column_stack([at[0] + wide * np.sign(c) * np.abs(c) ** 0.85, at[1] + high * d, np.full(len(ang), at[2])])
+
+
+def outside(ang, steps):
+    """Smooth rings from the mouth on: the lip bends round into the cliff, the floor runs out to sea. With the way out of the rock."""
+    c, d = np.cos(ang), np.sin(ang)
+    cliff = N.smooth(-0.80, -0.25, d)
+    to_side = np.column_stack([c, d * cliff, np.zeros(len(ang))])
+    p, gone, out = section(MOUTH, ang), 0.0, []
+    for step in steps:
+        gone += step
+        lip = 0.9 + 0.5 * np.sin(2 * ang + 1) + 0.3 * np.sin(5 * ang)  # metres in which the lip bends
+        turn = np.radians(40 + 52 * cliff) * (1 - np.exp(-gone / lip))
+        p = p + step * (np.sin(turn)[:, None] * to_side + np.cos(turn)[:, None] * [0, 0, 1])
+        way = -np.cos(turn)[:, None] * np.column_stack([c, d, 0 * c]) + (np.sin(turn) * cliff)[:, None] * [0, 0, 1]
+        out.append((p, way / np.linalg.norm(way, axis=1)[:, None]))
+    return out
+
+
+def broken(p, way, d):
+    """Points p moved along the way out of the rock: hollows and bulges, blocks, ledges; under all the floor."""
+    sea = N.smooth(4.5, 8.5, p[:, 2])  # surge has worn the mouth
+    rough = 0.42 * N.fbm3(p, 3, 0.55, 3) + 0.10 * np.abs(N.fbm3(p, 8, 1.3, 3)) + 0.04 * N.fbm3(p, 13, 4.0, 2)
+    rough = rough + sea * (0.30 * N.fbm3(p, 51, 0.9, 3) + 0.07 * N.fbm3(p, 53, 2.6, 3))
+    blocks = joints(p, 41, 1.3, 0.24, 0.34, 18) + joints(p, 47, 0.6, 0.07, 0.24, 10)
+    rough = rough + N.smooth(-0.95, -0.4, d) * (1 - 0.55 * sea) * blocks
+    ledge = 0.10 * N.smooth(0.2, 0.8, np.abs((p[:, 1] * 1.6 + 0.4 * N.fbm3(p, 17, 0.7, 2)) % 1 - 0.5) * 2)
+    p = p + (rough + (1 - 0.6 * sea) * ledge)[:, None] * way
+    out = N.smooth(8.0, 14.0, p[:, 2])
+    floor = 0.06 * N.fbm3(p, 23, 1.1, 3) + out * (0.25 * N.fbm3(p, 25, 0.22, 2) - 0.25)
+    p[:, 1] = np.maximum(p[:, 1], floor)
+    return p
+
+
 def main():
     n, m = 100, 120
-    rings = []
     ang = np.arange(n) / n * 2 * np.pi
-    for s in np.linspace(-0.02, 1, m):
-        at, wide, high = line(s)
-        c, d = np.cos(ang), np.sin(ang)
-        p = np.column_stack([at[0] + wide * np.sign(c) * np.abs(c) ** 0.85, at[1] + high * d, np.full(n, at[2])])
-        rough = 0.42 * N.fbm3(p, 3, 0.55, 3) + 0.10 * np.abs(N.fbm3(p, 8, 1.3, 3)) + 0.04 * N.fbm3(p, 13, 4.0, 2)
-        rough = rough + N.smooth(-0.95, -0.4, d) * (joints(p, 41, 1.3, 0.24, 0.34, 18) + joints(p, 47, 0.6, 0.07, 0.24, 10))
-        ledge = 0.10 * N.smooth(0.2, 0.8, np.abs((p[:, 1] * 1.6 + 0.4 * N.fbm3(p, 17, 0.7, 2)) % 1 - 0.5) * 2)
-        p = p - (rough + ledge)[:, None] * np.column_stack([c, d, np.zeros(n)])
-        floor = 0.06 * N.fbm3(p, 23, 1.1, 3)
-        p[:, 1] = np.maximum(p[:, 1], floor + 0.25 * (p[:, 1] < 0) * 0)
-        rings.append(p)
+    d = np.sin(ang)
+    inwards = np.column_stack([-np.cos(ang), -d, np.zeros(n)])
+    steps = 0.18 * 1.055 ** np.arange(32)
+    rings = [broken(p, way, d) for p, way in outside(ang, steps)[::-1]]
+    rings += [broken(section(s, ang), inwards, d) for s in np.linspace(MOUTH, 1, m)]
     wall = loft(np.array(rings), (False, True), orient=False)
     t = shade(wall, 60)
-    middle = np.array([line((9.0 - z) / 22.0)[0] for z in t.pos[:, 2]])
-    if ((middle - t.pos) * t.nrm).sum(1).mean() < 0:
+    inside = t.pos[:, 2] < 8
+    middle = np.array([line((9.0 - z) / 22.0)[0] for z in t.pos[inside, 2]])
+    if ((middle - t.pos[inside]) * t.nrm[inside]).sum(1).mean() < 0:
         wall = wall.flipped()
     rng = np.random.default_rng(5)
     parts = [wall]
