@@ -5,7 +5,7 @@ A bed has the sand's own texture (coarse_sand.py), and its rim dips below the gr
 import numpy as np
 
 import noise as N
-from mesh import Part, shade
+from mesh import box_uv, Part, shade
 from shapes import icosphere, tube
 
 TILE_M = 1.0  # of the cut from the sand's picture
@@ -70,8 +70,7 @@ def sunk(part, rgb, size, seed):
     c = np.asarray(rgb) * (1 + 0.22 * N.fbm3(part.pos, 5 + seed, 1.2 / size, 2))[:, None] * (1 - 0.45 * low)[:, None]
     c = N.mix(c, (0.44, 0.38, 0.29), 0.45 * dust)
     part.col = np.column_stack([np.clip(c, 0, 1), np.ones(len(c))])
-    part.uv = (part.pos[:, [0, 2]] + 0.4 * part.pos[:, [1]]) / 0.25
-    return part
+    return box_uv(part, 0.25, 3)
 
 
 def stones(count, foot, reach, height, seed):

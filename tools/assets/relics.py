@@ -113,8 +113,8 @@ def chain():
 
 
 def rope():
-    """Three strands laid right-handed, in a loose coil with an end that runs off."""
-    t = np.linspace(0, 1, 300)
+    """Three strands laid right-handed, in a loose coil with an end that runs off; a lay of 3.5 diameters."""
+    t = np.linspace(0, 1, 560)  # a dozen sections a lay
     turns = 2 * np.pi * 3.3
     r = 0.30 + 0.06 * np.sin(t * 9) + 0.10 * np.maximum(0, t - 0.86) * 10
     path = np.column_stack([r * np.cos(turns * t), 0.02 + 0.045 * t * 1.3 + 0.018 * np.sin(t * 31), r * np.sin(turns * t) * 0.86])
@@ -125,7 +125,7 @@ def rope():
     _, u, v = frames(path)
     parts = []
     for strand in range(3):
-        a = s / 0.085 * 2 * np.pi + strand * 2 * np.pi / 3
+        a = s / 0.155 * 2 * np.pi + strand * 2 * np.pi / 3
         q = path + 0.0105 * (np.cos(a)[:, None] * u + np.sin(a)[:, None] * v)
         parts.append(tube(q, 0.0115, 5))
     return box_uv(settle(join(parts), (0.42, 0.36, 0.24), (0.62, 0.55, 0.40), 99, 0.45), 0.3)
