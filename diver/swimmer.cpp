@@ -284,7 +284,7 @@ double slow(const SwimmerState& swimmer) {
 // Spine and legs, for the head to come round by turn (to starboard) and nose_up, without rolling.
 void steer(double turn, double nose_up, double roll_rad, const Vec6& velocity,
            SwimmerState& swimmer, double dt_s) {
-  // Without way there is no flow over the legs that rights the body: firmer then.
+  // Without way there is no flow over the legs that rights the body: pitch is firmer then.
   const double rests = swimmer.rests;
   // Rolling with each beat is the kick's: legs that worked against it would take from its thrust.
   const double hz = std::max(swimmer.frequency_hz, 0.25);
@@ -300,7 +300,8 @@ void steer(double turn, double nose_up, double roll_rad, const Vec6& velocity,
   const double leans =
       slow(swimmer) * std::clamp(-2.0 * swimmer.lift_rad / kMostLift_rad, 0.0, 1.0);
   swimmer.roll_sum = rests * std::clamp(swimmer.roll_sum + roll * dt_s, -1.0, 1.0);
-  // Slow legs right little: they begin early.
+  // At low speed the legs right little, so that they begin at a small roll. Gains with way, and at
+  // rest; Swimmer.WithoutAJacketDoesNotRollOver holds them.
   const double tilt =
       std::clamp(std::lerp(8.0, 4.0, rests) * (roll - leans * yaw * kMostBank_rad) +
                      std::lerp(2.0, 1.5, rests) * roll_rate + 0.5 * swimmer.roll_sum,

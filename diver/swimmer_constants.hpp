@@ -7,12 +7,12 @@
 // hovered 0.17 m off the depth, tilted by 4.4 degrees, 3.9 m off the place. "Free" says that both
 // factors stay within 0.18 m and 85 W; 69 to 73 s; 7.5 to 8.0 m a minute and 0.19 m; 0.24 m, 6
 // degrees and 5.0 m: a choice that hardly changes the results. The gains in swimmer.cpp are free
-// too, but for that of yaw: 0.7 times as large it misses the place behind by 1.6 m in 75 s. The
-// hover in these figures rested and swam back. Hands, knees, slow kicks and the way against a
-// current, which hold the place now, were measured at rest at 15 and 5 m and in 0.05, 0.1 and 0.2
-// m/s from the side for two minutes, three after the start: 0.03, 0.15, 0.36, 0.18 and 0.03 m off
-// the place at 2, 28, 6, 20 and 56 W; "free" there says that both factors stay within 0.8 m and
-// 40 W (56 W in 0.2 m/s). Tests named here are those of tests/diver.
+// too, but for that of roll, and that of yaw: 0.7 times as large it misses the place behind by 1.6
+// m in 75 s. The hover in these figures rested and swam back. Hands, knees, slow kicks and the way
+// against a current, which hold the place now, were measured at rest at 15 and 5 m and in 0.05, 0.1
+// and 0.2 m/s from the side for two minutes, three after the start: 0.03, 0.15, 0.36, 0.18 and 0.03
+// m off the place at 2, 28, 6, 20 and 56 W; "free" there says that both factors stay within 0.8 m
+// and 40 W (56 W in 0.2 m/s). Tests named here are those of tests/diver.
 #pragma once
 
 #include <cstdint>

@@ -36,7 +36,8 @@ void main() {
       ivec3 at = ivec3(own.xy * kSide + ivec2(x, y), own.z);
       vec3 added = part < 0.0 ? mix(rows[0][x], rows[1][x], part + 1.0) : mix(rows[1][x], rows[2][x], part);
       vec4 picture = imageLoad(hdr_image, ivec3(min(at.xy, size - 1), at.z));
-      // Dark things take light from their surroundings, but never all of a darker surrounding's.
+      // A dark thing takes light from what lies beside it. Of a loss of more than half, picture^2 / (4 loss) remains:
+      // continuous in value and slope, never zero.
       vec3 taken = max(-added / max(picture.rgb, vec3(1e-20)), vec3(0.5));
       vec3 sum = max(picture.rgb + added, picture.rgb * 0.25 / taken);
       if (at.x < size.x && at.y < size.y) imageStore(hdr_image, at, vec4(min(sum, vec3(60000.0)), picture.a));

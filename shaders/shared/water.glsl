@@ -169,7 +169,8 @@ Sight look_through(float depth_m, vec3 direction, float length_m, float lit, flo
   if (light_has(kLightForwardScatter)) {
     // Upwards in clear water light grows faster than it fades, up to the surface: a tenth of c is the floor.
     vec3 deeper = exp(clamp(light.diffuse_attenuation * direction.y * length_m, vec3(-80.0), vec3(80.0)));
-    // The sun's beam lights the water in front of an object, too: only what comes evenly from behind is hidden by it.
+    // The sun's beam lights the water in front of an object, too. As an approximation, what it sends beyond its light at
+    // 90 degrees counts as in front: the object hides none of it.
     float to_sun = dot(direction, light.to_sun);
     if (to_sun > 0.0)
       source -= murk * irradiance * direct * lit / light.sun_cosine * (turned_from_beam(to_sun) - turned_from_beam(0.0));

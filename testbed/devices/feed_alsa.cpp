@@ -1,6 +1,7 @@
 // A microphone at this machine's sound card, by ALSA's library, which PipeWire and PulseAudio serve
 // too. Its samples become sound packets of 20 ms, stamped by the card's own clock. A card that is
 // pulled out is looked for again.
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
@@ -29,6 +30,9 @@ struct Alsa {
   int (*close)(void* pcm) = nullptr;
   const char* (*words)(int error) = nullptr;
 };
+
+constexpr std::uint32_t kRestartGap =
+    2000;  // packets: well beyond net::CounterTrack's kMostMissing
 
 class AlsaFeed final : public Feed {
  public:
@@ -106,14 +110,16 @@ class AlsaFeed final : public Feed {
     pcm_ = nullptr;
     next_try_ns_ = now_ns() + kCardTryEvery_ns;
   }
-  // The packets that nobody heard count as lost, and their time goes by.
+  // Up to kMostMissing packets (20 s) that nobody heard count as lost, more as a restart; their
+  // time goes by.
   void look_again() {
     if (now_ns() < next_try_ns_) return;
     next_try_ns_ = now_ns() + kCardTryEvery_ns;
     if (open_card() < 0) return;
     const double away_s = 1e-9 * static_cast<double>(now_ns() - away_ns_);
-    const auto missed = static_cast<std::uint32_t>(std::lround(away_s / kSoundPacket_s));
-    packet_.sequence = static_cast<std::uint16_t>(packet_.sequence + missed);
+    const auto missed = static_cast<std::uint32_t>(std::llround(away_s / kSoundPacket_s));
+    // Numbers have 16 bits: a longer absence must not look like a short one.
+    packet_.sequence = static_cast<std::uint16_t>(packet_.sequence + std::min(missed, kRestartGap));
     packet_.timestamp += missed * static_cast<std::uint32_t>(buffer_.size());
     filled_ = 0;
     trouble_.clear();

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstring>
 #include <thread>
+#include <utility>
 
 #include "engine/core/text.hpp"
 #include "testbed/devices/adapter.hpp"
@@ -23,9 +24,10 @@ constexpr std::string_view kRateUuid = "00002a37-0000-1000-8000-00805f9b34fb",
                            kPmdDataUuid = "fb005c82-02e7-f387-1cad-8acd2d8df0c8";
 constexpr std::uint64_t kCall_us = 5'000'000;
 constexpr TimeNs kTryEvery_ns = 5 * kSecond_ns;
-// A strap sends each second. BlueZ says nothing of a strap whose adapter was pulled out, or if it
-// ends itself.
+// A strap sends each second. This feed hears PropertiesChanged alone, which need not come if an
+// adapter is pulled out or BlueZ ends.
 constexpr TimeNs kSilent_ns = 5 * kSecond_ns;
+constexpr const char* kSilent = "the strap is silent";
 
 struct BusError {
   const char* name = nullptr;
@@ -84,7 +86,6 @@ class BluetoothFeed final : public Feed {
 
   void receive(const net::Received& received, int wait_ms) override {
     received_ = &received;
-    if (!rate_path_.empty() && now_ns() - heard_ns_ > kSilent_ns) look_again("the strap is silent");
     if (rate_path_.empty() && now_ns() >= next_try_ns_) {
       connect();
       next_try_ns_ = now_ns() + kTryEvery_ns;
@@ -96,6 +97,11 @@ class BluetoothFeed final : public Feed {
       trouble_ = fmt::format("D-Bus: {}", std::strerror(-done));
       std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
     } else if (done == 0) {
+      // All that had come was read.
+      if (!rate_path_.empty() && now_ns() - heard_ns_ > kSilent_ns) {
+        look_again(kSilent);
+        silent_ = true;
+      }
       (void)bus_of_.wait(bus_, static_cast<std::uint64_t>(wait_ms) * 1000);
     }
     received_ = nullptr;
@@ -174,7 +180,7 @@ class BluetoothFeed final : public Feed {
       start_ecg(control);
     rate_path_ = rate;
     heard_ns_ = now_ns();
-    trouble_.clear();
+    trouble_ = silent_ ? kSilent : "";  // until it is heard
   }
 
   void look_again(const char* why) {
@@ -267,6 +273,7 @@ class BluetoothFeed final : public Feed {
       int connected = 1;
       if (value && name == "Value" && bus_of_.enter(message, 'v', "ay") > 0) {
         heard_ns_ = now_ns();
+        if (std::exchange(silent_, false)) trouble_.clear();
         const void* data = nullptr;
         std::size_t size = 0;
         if (bus_of_.read_array(message, 'y', &data, &size) >= 0 && received_)
@@ -286,6 +293,7 @@ class BluetoothFeed final : public Feed {
   std::string wanted_, device_path_, rate_path_, pmd_path_, trouble_;
   void* bus_ = nullptr;
   TimeNs next_try_ns_ = 0, heard_ns_ = 0;
+  bool silent_ = false;  // said nothing for kSilent_ns, and nothing since
   const net::Received* received_ = nullptr;
 };
 

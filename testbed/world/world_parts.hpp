@@ -26,7 +26,7 @@ class Receiver final : public StepSink {
   // A loop's end is not the recording's: a world has one loop after another.
   Status finish() override { return {}; }
 
-  // Between two ticks.
+  // take: between two ticks; deliver: at the end of each step and of a tick.
   void take(WorldImage image);
   void deliver(TimeNs now_ns);
   // What arrived or is on its way. seen: the step whose readings do not come again.

@@ -278,7 +278,7 @@ TEST(Swimmer, WithoutAJacketDoesNotRollOver) {
       EXPECT_LT(degrees(roll_rad), 10.0) << c.name << " at " << speed_m_s;
     }
     // Hovering, he meets a current.
-    for (const double current_m_s : {0.15, 0.2}) {
+    for (const double current_m_s : {0.15, 0.2, 0.3}) {
       Swim s = begin(body, {0.0, 0.0, 12.0}, 0.0);
       s.inputs.current_ned_m_s = Vec3(0.0, current_m_s, 0.0);
       swim_for(body, s, {{0.0, 0.0, 12.0}, 0.0}, 90.0, watch);

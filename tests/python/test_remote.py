@@ -127,6 +127,8 @@ class Remote(unittest.TestCase):
             with unittest.mock.patch.object(neritic.remote.Core, "_bring", counted):
                 speed.remote_image_ms(rounds=12)
         except neritic.Error as error:
+            if "Vulkan" not in str(error):
+                raise
             self.skipTest(str(error))
         # Its 245 pages are new with the first ones, whose memory the others use again.
         self.assertGreaterEqual(len(faults), 10)

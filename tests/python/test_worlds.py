@@ -382,6 +382,8 @@ class Worlds(unittest.TestCase):
         try:
             spent_ms = speed.image_ms(rounds=6)
         except neritic.Error as error:
+            if "Vulkan" not in str(error):
+                raise
             self.skipTest(str(error))
         self.assertLess(min(spent_ms), 0.2)  # the least: other programs run beside
 

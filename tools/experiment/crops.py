@@ -32,7 +32,7 @@ WIDE_RANGES = {"depth_m": (3.0, 30.0), "fov_deg": (12.0, 48.0), "fish_scale": (1
 FISH = [("fish", "", 1.0), ("school_fish", "snapper", 0.77), ("school_fish", "damsel", 1.9)]
 DIVERS, CLIPS = ["diver", "diver_grey", "diver_twin"], ["swim", "hover", "cruise", "frog"]
 APART, LOOKS_OF = 1 << 42, ["learnt", "places"]
-MOST_VIGNETTE, HALF_PICTURE = 0.3, np.radians([27.5, 40.0])  # the scenes' cameras have 0.25 at most; rows, columns
+MOST_VIGNETTE, HALF_PICTURE_RAD = 0.3, np.radians([27.5, 40.0])  # the scenes' cameras have 0.25 at most; rows, columns
 FAR = [900.0, 900.0, -40.0]
 ASSETS = os.path.normpath(os.path.join(SHIPPED, ".."))
 # Beside plant and rock, in scenes to learn from: three a scene, of these.
@@ -95,7 +95,7 @@ def visible(pixels, its):
 def falloff(random, side, fov):
     """How bright each pixel [side, side] of a crop is that opens by fov (radians) somewhere in a wider picture, whose corners are
     dark: cos^4 of the angle off its middle, to a power of at most MOST_VIGNETTE, as a camera's `vignette`. The crop's middle is 1."""
-    off = np.arctan(random.uniform(-1, 1, 2) * np.tan(HALF_PICTURE))
+    off = np.arctan(random.uniform(-1, 1, 2) * np.tan(HALF_PICTURE_RAD))
     across = (np.arange(side) + 0.5) / side * 2 * math.tan(fov / 2) - math.tan(fov / 2)
     squared = np.add.outer(np.tan(off[0] + np.arctan(across)) ** 2, np.tan(off[1] + np.arctan(across)) ** 2)
     light = (1 + squared) ** (-2 * random.uniform(0, MOST_VIGNETTE))  # cos^2 = 1 / (1 + tan^2)

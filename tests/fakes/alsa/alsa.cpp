@@ -1,5 +1,5 @@
 // A libasound for tests: the functions that the program loads (alsa/pcm.h), over one sound card
-// that a test fills, pulls out and puts back (fake_alsa.hpp). It is never waited for.
+// that a test fills, pulls out and puts back (fake_alsa.hpp). Reads never block.
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>

@@ -87,6 +87,7 @@ FakeBluez::FakeBluez(bool connected)
   const std::string at = folder_ / "bus";
   sockaddr_un where{};
   where.sun_family = AF_UNIX;
+  EXPECT_LT(at.size(), sizeof where.sun_path);
   at.copy(where.sun_path, sizeof where.sun_path - 1);
   EXPECT_EQ(::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&where), sizeof where), 0);
   EXPECT_EQ(::listen(listener_.get(), 1), 0);
