@@ -49,17 +49,23 @@ class DeviceSource final : public SampleSource {
   // Any thread.
   DeviceHealth health() const;
   const std::string& name() const { return settings_.name; }
+  // What a microphone hears; of other devices nothing. Any thread.
+  SoundQueue& sound() { return sound_; }
+  bool hears() const { return settings_.device == "microphone"; }
   // Polled alone.
   const net::ClockMap& clock_map() const { return adapter_->clock_map(); }
 
  private:
   DeviceSource(const scene::DeviceSource& source, std::unique_ptr<Feed> feed,
                std::unique_ptr<DeviceAdapter> adapter, const Outlet& outlet)
-      : settings_(source), feed_(std::move(feed)), adapter_(std::move(adapter)), outlet_(outlet) {}
+      : settings_(source), feed_(std::move(feed)), adapter_(std::move(adapter)), outlet_(outlet) {
+    adapter_->hear_into(&sound_);
+  }
   void run();
   void tell(TimeNs now_ns);
 
   scene::DeviceSource settings_;
+  SoundQueue sound_;
   std::unique_ptr<Feed> feed_;
   std::unique_ptr<DeviceAdapter> adapter_;
   Outlet outlet_;

@@ -90,6 +90,7 @@ void MicrophoneAdapter::hear(const net::RtpPacket& packet, TimeNs arrived_ns, Ou
   const auto count = static_cast<std::int64_t>(packet.samples.size());
   // A packet leaves when its last sample was heard.
   clock_.add(wire_ns(timestamp_ + count), arrived_ns);
+  if (sound_) sound_->push(clock_.to_host(wire_ns(timestamp_)), rate_hz_, packet.samples);
   last_ = packet.samples;
   block_.insert(block_.end(), packet.samples.begin(), packet.samples.end());
   if (block_.size() < block_samples_) return;

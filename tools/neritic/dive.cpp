@@ -29,6 +29,7 @@
 #include "tools/neritic/named_sensors.hpp"
 #include "tools/neritic/recorded_scene.hpp"
 #include "tools/neritic/recording_export.hpp"
+#include "tools/neritic/sound_record.hpp"
 #include "tools/neritic/step_files.hpp"
 #include "tools/neritic/timeline_picture.hpp"
 
@@ -316,6 +317,9 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
   if (view->recorder()) step_sinks.push_back(view->recorder());
   std::optional<DeviceNotes> device_notes;
   if (devices) step_sinks.push_back(&device_notes.emplace(*devices));
+  std::optional<SoundRecord> sound;
+  if (devices && files && files->recording())
+    step_sinks.push_back(&sound.emplace(*devices, *files->recording()));
   std::unique_ptr<Markers> markers;
   if (!flags.markers.empty()) {
     NERITIC_TRY(markers, Markers::open(flags.markers, files ? files->recording() : nullptr));

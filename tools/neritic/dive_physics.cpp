@@ -13,6 +13,7 @@
 #include "tools/neritic/dive_runs.hpp"
 #include "tools/neritic/dive_told.hpp"
 #include "tools/neritic/markers.hpp"
+#include "tools/neritic/sound_record.hpp"
 #include "tools/neritic/step_files.hpp"
 
 namespace neritic::tools {
@@ -88,6 +89,8 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,
     for (SampleSource* source : devices->sources()) sources.push_back(source);
     sinks.push_back(&device_notes.emplace(*devices));
   }
+  std::optional<SoundRecord> sound;
+  if (devices && files.recording()) sinks.push_back(&sound.emplace(*devices, *files.recording()));
   std::unique_ptr<Markers> markers;
   if (!flags.markers.empty()) {
     if (!flags.realtime)

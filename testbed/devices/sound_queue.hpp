@@ -1,0 +1,49 @@
+// The sound that a microphone heard, from the device's thread to whoever records it. Bounded: half
+// a minute that nobody takes is dropped. Any thread.
+#pragma once
+
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "engine/core/clock.hpp"
+
+namespace neritic::testbed {
+
+// A packet of sound: when its first sample was heard, by the clock of the device's samples.
+struct HeardSound {
+  TimeNs captured_ns = 0;
+  double rate_hz = 0.0;
+  std::vector<float> samples;  // -1 to 1
+};
+
+class SoundQueue {
+ public:
+  static constexpr double kMost_s = 30.0;
+
+  // Until somebody wants it nothing is kept.
+  void want() {
+    const std::lock_guard lock(mutex_);
+    wanted_ = true;
+  }
+  void push(TimeNs captured_ns, double rate_hz, const std::vector<float>& samples) {
+    const std::lock_guard lock(mutex_);
+    if (!wanted_) return;
+    if (waiting_s_ > kMost_s) waiting_.clear(), waiting_s_ = 0.0;
+    waiting_.push_back({captured_ns, rate_hz, samples});
+    waiting_s_ += static_cast<double>(samples.size()) / rate_hz;
+  }
+  std::vector<HeardSound> take() {
+    const std::lock_guard lock(mutex_);
+    waiting_s_ = 0.0;
+    return std::exchange(waiting_, {});
+  }
+
+ private:
+  std::mutex mutex_;
+  bool wanted_ = false;
+  double waiting_s_ = 0.0;
+  std::vector<HeardSound> waiting_;
+};
+
+}  // namespace neritic::testbed
