@@ -213,17 +213,22 @@ def whip():
 
 
 def barrel_sponge():
-    """A ribbed vase, hollow."""
-    n = 44
+    """A vase, hollow: ribs that run up, broken into knobs, and a ragged rim."""
+    n = 60
     ang = np.arange(n) / n * 2 * np.pi
-    prof = [(0.20, -0.05), (0.25, 0.06), (0.31, 0.22), (0.34, 0.40), (0.33, 0.54), (0.29, 0.63), (0.265, 0.645), (0.235, 0.62), (0.225, 0.5), (0.20, 0.34), (0.13, 0.24), (0.03, 0.22)]
+    prof = np.array([(0.20, -0.05), (0.25, 0.06), (0.31, 0.22), (0.34, 0.40), (0.33, 0.54), (0.29, 0.63), (0.265, 0.645), (0.235, 0.62), (0.225, 0.5), (0.20, 0.34), (0.13, 0.24), (0.03, 0.22)])
+    way = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(prof, axis=0), axis=1))])
     rings = []
-    for k, (r, y) in enumerate(prof):
-        ribs = 1 + (0.085 if k < 6 else 0.02) * np.abs(np.sin(ang * 9 + 0.6 * np.sin(3 * y * 3))) - 0.03
+    for w in np.concatenate([np.linspace(0, way[6], 26)[:-1], np.linspace(way[6], way[-1], 11)]):
+        r, y = (np.interp(w, way, prof[:, k]) for k in range(2))
+        out = N.smooth(way[7], way[5], w)  # 1 outside, 0 within
         c = np.column_stack([np.cos(ang), np.full(n, y * 3), np.sin(ang)])
-        rr = r * ribs * (1 + 0.06 * N.fbm3(c, 21, 1.5, 3))
-        rings.append(np.column_stack([rr * np.cos(ang), np.full(n, y), rr * np.sin(ang)]))
-    part = loft(rings, (True, True))
+        sway = 0.35 * N.fbm3(c * [1, 0.5, 1], 25, 0.9, 2)
+        rib = np.abs(np.sin(ang * 6 + sway)) * (0.85 + 0.5 * N.fbm3(c * [1, 1.3, 1], 27, 1.6, 2))
+        rr = r * (0.94 + out * 0.19 * rib) * (1 + 0.07 * N.fbm3(c * [1, 0.5, 1], 21, 1.2, 2))
+        high = y + N.smooth(0.45, 0.64, y) * (0.025 * N.fbm3(c * [1, 0, 1], 31, 1.6, 2) + 0.022 * rib)
+        rings.append(np.column_stack([rr * np.cos(ang), high, rr * np.sin(ang)]))
+    part = loft(np.array(rings), (True, True))
     dark = lambda p: np.where((np.hypot(p[:, 0], p[:, 2]) < 0.245) & (p[:, 1] > 0.2), 0.0, N.smooth(-0.1, 0.5, p[:, 1]))
     part = paint(part, (0.10, 0.045, 0.036), (0.40, 0.20, 0.15), dark, 23, 0.40, 50)
     return box_uv(footed(part, 0.09), 0.3)
