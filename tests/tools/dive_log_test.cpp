@@ -25,7 +25,7 @@ class DiveLog : public testing::Test {
     ASSERT_TRUE(
         write_text(
             folder_ / "d.toml",
-            "tanks = [ { volume_l = 3, pressure_bar = 200 }, { volume_l = 1, oxygen = 0.5 } ]\n"
+            "tanks = [ { volume_l = 3, pressure_bar = 200 }, { volume_l = 0.5, oxygen = 0.5 } ]\n"
             "[computer]\ngf_low = 0.1\ngf_high = 0.2\n")
             .ok());
     ASSERT_TRUE(write_text(folder_ / "s.toml", R"(title = "all"
