@@ -300,12 +300,13 @@ void steer(double turn, double nose_up, double roll_rad, const Vec6& velocity,
   const double leans =
       slow(swimmer) * std::clamp(-2.0 * swimmer.lift_rad / kMostLift_rad, 0.0, 1.0);
   swimmer.roll_sum = rests * std::clamp(swimmer.roll_sum + roll * dt_s, -1.0, 1.0);
-  // At low speed the legs right little, so that they begin at a small roll. Gains with way, and at
-  // rest; Swimmer.WithoutAJacketDoesNotRollOver holds them.
-  const double tilt =
-      std::clamp(std::lerp(8.0, 4.0, rests) * (roll - leans * yaw * kMostBank_rad) +
-                     std::lerp(2.0, 1.5, rests) * roll_rate + 0.5 * swimmer.roll_sum,
-                 -1.0, 1.0);
+  // Legs right the less the slower they are: the gain goes with the inverse square of the way of a
+  // beat, from 1 at 0.6 m/s to 4 at 0.3. Swimmer.WithoutAJacketDoesNotRollOver holds it.
+  const double way_m_s = kMetresABeat * hz;
+  const double firm = std::lerp(std::clamp(0.36 / (way_m_s * way_m_s), 1.0, 4.0), 1.0, rests);
+  const double tilt = std::clamp(2.0 * firm * (roll - leans * yaw * kMostBank_rad) +
+                                     std::sqrt(firm) * roll_rate + 0.5 * swimmer.roll_sum,
+                                 -1.0, 1.0);
   // A resting diver corrects the roll by bending to a side, which moves trunk and legs apart.
   const double aside = tilt * std::max(leans, slow(swimmer));
   const double turns = yaw * (1.0 - leans);
@@ -324,7 +325,8 @@ void steer(double turn, double nose_up, double roll_rad, const Vec6& velocity,
   follow(swimmer.tread, rests * treads, kSteeringLag_s, dt_s);
   swimmer.tread_phase_rad =
       std::fmod(swimmer.tread_phase_rad + 2.0 * kPi * kTread_hz * dt_s, 2.0 * kPi);
-  follow(swimmer.twist_rad, -tilt * kMostTwist_rad, kSteeringLag_s, dt_s);
+  const double most_twist_rad = std::lerp(kMostTwist_rad, kMostSlowTwist_rad, (firm - 1.0) / 3.0);
+  follow(swimmer.twist_rad, -tilt * most_twist_rad, kSteeringLag_s, dt_s);
 }
 
 JointRotations posture_for(const Body& body, const SwimmerSettings& settings,

@@ -30,11 +30,12 @@ inline constexpr double kSlowestBeat_hz = 0.25;
 
 // Angles that steer, far inside the range of joints: hip 30 degrees back and to the inner side, 45
 // to the outer; trunk 80 forward, 25 back, 35 to a side, 45 of twist (AAOS 1965, Joint Motion).
-// Both legs up or down: free.
-inline constexpr double kMostLift_rad = radians(18.0);
-// One leg up and one down, which rights a roll: free with a jacket. Without the jacket's cloth to
-// lift it the tank on the back turns the diver over: a 15 l tank does at 14 degrees, in 0.2 m/s.
-inline constexpr double kMostTwist_rad = radians(20.0);
+// Both legs up or down, and one up and one down: free.
+inline constexpr double kMostLift_rad = radians(18.0), kMostTwist_rad = radians(14.0);
+// One up and one down at 0.3 m/s and below, which rights a roll: free with a jacket. Without the
+// jacket's cloth to lift it the tank on the back turns the diver over: a 15 l tank does at 14
+// degrees, in 0.2 m/s.
+inline constexpr double kMostSlowTwist_rad = radians(20.0);
 // One leg beats by this share wider than the mean, the other narrower: free.
 inline constexpr double kMostLeftMore = 0.5;
 // Back and legs to a side. Less bend turns more slowly: at 0.7 times the diver misses the place

@@ -110,7 +110,7 @@ TEST(SceneCondition, WhoFaintsGoesLimpByAndBy) {
   const auto bytes = encode_state(dive.world->state_format(),
                                   saved_state(*dive.simulation, dive.world->state_format()));
   dive.run(3.0, see);
-  EXPECT_LT(fastest_rad_s, radians(75.0));
+  EXPECT_LT(fastest_rad_s, radians(90.0));
   EXPECT_LT(fastest_m_s, glm::length(at) + 0.1);
   EXPECT_LT(dive.state().humans()[0].human.life.limb_work_j - work_j, 15.0);
   for (const Quat& q : dive.state().humans()[0].human.limbs.rotation)
