@@ -10,7 +10,7 @@
 #include "engine/net/counter_track.hpp"
 #include "engine/net/wire_bytes.hpp"
 #include "testbed/devices/outlet.hpp"
-#include "testbed/devices/sound_queue.hpp"
+#include "testbed/samples/sound_queue.hpp"
 
 namespace neritic::testbed {
 

@@ -26,6 +26,13 @@ std::vector<DeviceHealth> Devices::health() const {
   return out;
 }
 
+std::vector<SoundSource> Devices::sounds() {
+  std::vector<SoundSource> out;
+  for (const auto& source : sources_)
+    if (source->hears()) out.push_back({source->name(), &source->sound()});
+  return out;
+}
+
 const DeviceSource* Devices::find(std::string_view name) const {
   const auto at = std::ranges::find_if(sources_, [&](const auto& s) { return s->name() == name; });
   return at == sources_.end() ? nullptr : at->get();

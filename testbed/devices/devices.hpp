@@ -15,6 +15,8 @@ class Devices {
   std::vector<SampleSource*> sources() const;
   std::vector<DeviceHealth> health() const;
   const std::vector<std::unique_ptr<DeviceSource>>& all() const { return sources_; }
+  // Of the microphones, for a recording; the queues live as long as this does.
+  std::vector<SoundSource> sounds();
   const DeviceSource* find(std::string_view name) const;
 
  private:

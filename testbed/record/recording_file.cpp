@@ -1,6 +1,11 @@
 #include "testbed/record/recording_file.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "engine/core/files.hpp"
+#include "engine/recording/cdr.hpp"
+#include "engine/recording/ros_types.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -37,8 +42,10 @@ RecordingFile::RecordingFile(const PhysicsWorld& world, const PhysicsSimulation&
       options_(std::move(options)),
       file_(std::move(path)),
       log_(file_, run_of(world, simulation, options_), options_.recorded_at_ns),
-      ros_(file_, world) {
+      ros_(file_, world),
+      sound_channels_(options_.sounds.size()) {
   name_sources();
+  for (const SoundSource& source : options_.sounds) source.sound->want(true);
 }
 
 void RecordingFile::name_sources() {
@@ -70,10 +77,35 @@ Status RecordingFile::accept(const sim::Snapshot<PhysicsState>& step,
   for (const Sample& sample : outputs)
     if (!ros_.output(sample, log_.now_ns(), log_.scene_ns(sample.header.captured_ns)))
       log_.sample(sample);
+  write_sounds(step);
   return {};
 }
 
+void RecordingFile::write_sounds(const sim::Snapshot<PhysicsState>& step) {
+  const auto log_ns = static_cast<std::uint64_t>(std::llround(1e9 * step.time_s));
+  for (std::size_t i = 0; i < options_.sounds.size(); ++i) {
+    const SoundSource& source = options_.sounds[i];
+    SoundChannel& channel = sound_channels_[i];
+    for (const HeardSound& sound : source.sound->take()) {
+      if (!sound_schema_)
+        sound_schema_ = file_.add_schema(recording::ros_schema("neritic_msgs/msg/Audio"));
+      if (!channel.id)
+        channel.id = file_.add_channel({*sound_schema_, "/" + source.name + "/sound", "cdr", {}});
+      const TimeNs stamp_ns = std::max<TimeNs>(sound.captured_ns + step.scene_from_host_ns(), 0);
+      std::string message;
+      recording::CdrWriter cdr(message);
+      cdr.header(stamp_ns, source.name);
+      cdr.number(sound.rate_hz);
+      cdr.count(sound.samples.size());
+      for (const float sample : sound.samples) cdr.number(sample);
+      file_.message({*channel.id, channel.sequence++, log_ns, static_cast<std::uint64_t>(stamp_ns),
+                     std::as_bytes(std::span(message))});
+    }
+  }
+}
+
 Status RecordingFile::finish() {
+  for (const SoundSource& source : options_.sounds) source.sound->want(false);
   if (!file_.failed()) name_sources();
   return file_.finish();
 }

@@ -12,6 +12,7 @@
 #include "testbed/record/ros_outputs.hpp"
 #include "testbed/record/step_sink.hpp"
 #include "testbed/samples/sample_log.hpp"
+#include "testbed/samples/sound_queue.hpp"
 
 namespace neritic::testbed {
 
@@ -21,6 +22,9 @@ struct RecordingOptions {
   std::optional<std::int64_t> recorded_at_ns;  // since 1970, of runs on a real clock
   // Any thread: one line, when the file fails.
   std::function<void(const std::string&)> on_failure;
+  // A topic SOURCE/sound each, which `neritic recording export --format wav` makes a .wav of. The
+  // queues outlive the recording.
+  std::vector<SoundSource> sounds;
 };
 // The options of a scene that was read from a file. kBadInput if it cannot be read again.
 Result<RecordingOptions> recording_of_scene(const std::filesystem::path& scene);
@@ -45,6 +49,7 @@ class RecordingFile final : public StepSink {
  private:
   void name_sources();
   void tell_failure();
+  void write_sounds(const sim::Snapshot<PhysicsState>& step);
 
   const PhysicsWorld& world_;
   const SampleInbox& inbox_;
@@ -52,6 +57,13 @@ class RecordingFile final : public StepSink {
   McapFile file_;
   SampleLogWriter log_;
   RosOutputs ros_;
+  // Of options_.sounds, from their first sound on.
+  struct SoundChannel {
+    std::optional<std::uint16_t> id;
+    std::uint32_t sequence = 0;
+  };
+  std::vector<SoundChannel> sound_channels_;
+  std::optional<std::uint16_t> sound_schema_;
   bool told_ = false;
 };
 

@@ -6,8 +6,10 @@ import io
 import os
 import re
 import socket
+import subprocess
 import tempfile
 import unittest
+import wave
 from pathlib import Path
 
 import numpy as np
@@ -64,6 +66,26 @@ class Examples(unittest.TestCase):
                         break
                 else:
                     self.fail("nothing was heard")
+
+    def test_a_recording_has_the_sound_of_the_scenes_microphone(self):
+        assets = ROOT / "assets"
+        with tempfile.TemporaryDirectory() as folder:
+            ramp = np.arange(-8000, 8000, dtype="<i2")
+            with wave.open(f"{folder}/ramp.wav", "wb") as file:
+                file.setparams((1, 2, 16000, 0, "NONE", ""))
+                file.writeframes(ramp.tobytes())
+            scene = Path(folder) / "lab.toml"
+            scene.write_text(f'[physics]\n[[objects]]\nname = "diver"\nmodel = "{assets}/models/diver.glb"\n'
+                             f'human = "{assets}/divers/recreational.toml"\nposition_m = [0, -12, 0]\n'
+                             f'[sources]\nmic = "microphone wav {folder}/ramp.wav"\n')
+            with neritic.open(scene, real_time=True) as world, world.record(Path(folder) / "run"):
+                world.tick(360)
+            subprocess.run([os.environ.get("NERITIC", str(ROOT / "build/release/tools/neritic")), "-q", "recording", "export", f"{folder}/run.mcap", "--format", "wav", "--out", f"{folder}/sounds"],
+                           check=True)
+            sound = (Path(folder) / "sounds/mic_sound.wav").read_bytes()
+            heard = np.frombuffer(sound[sound.index(b"data") + 8:], dtype="<f4") * 32768
+            self.assertGreater(len(heard), 8000)
+            np.testing.assert_array_equal((heard - heard[0]) % 16000, np.arange(len(heard)) % 16000)
 
     def test_messages_by_sound_end_as_was_accepted(self):
         """Each message as heard, when, or as lost, and why: tests/golden/talk.messages.csv (NERITIC_UPDATE_GOLDEN=1 writes it)."""

@@ -29,7 +29,6 @@
 #include "tools/neritic/named_sensors.hpp"
 #include "tools/neritic/recorded_scene.hpp"
 #include "tools/neritic/recording_export.hpp"
-#include "tools/neritic/sound_record.hpp"
 #include "tools/neritic/step_files.hpp"
 #include "tools/neritic/timeline_picture.hpp"
 
@@ -277,6 +276,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
   if (physics && !replay) {
     NERITIC_TRY(devices, Devices::open(session->scene(), physics->world(), physics->inbox(),
                                        DeviceSource::Pace::kThread));
+    recording.sounds = devices->sounds();
   }
   NERITIC_TRY(const auto hud, hud_options(flags, physics.get(), unasked_hud(screen)));
   if (hud && !screen.headset && !fit_one_window(hud->layouts))
@@ -317,9 +317,6 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
   if (view->recorder()) step_sinks.push_back(view->recorder());
   std::optional<DeviceNotes> device_notes;
   if (devices) step_sinks.push_back(&device_notes.emplace(*devices));
-  std::optional<SoundRecord> sound;
-  if (devices && files && files->recording())
-    step_sinks.push_back(&sound.emplace(*devices, *files->recording()));
   std::unique_ptr<Markers> markers;
   if (!flags.markers.empty()) {
     NERITIC_TRY(markers, Markers::open(flags.markers, files ? files->recording() : nullptr));

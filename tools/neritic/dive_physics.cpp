@@ -13,7 +13,6 @@
 #include "tools/neritic/dive_runs.hpp"
 #include "tools/neritic/dive_told.hpp"
 #include "tools/neritic/markers.hpp"
-#include "tools/neritic/sound_record.hpp"
 #include "tools/neritic/step_files.hpp"
 
 namespace neritic::tools {
@@ -58,6 +57,14 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,
   if (!flags.files.record.empty()) {
     NERITIC_TRY(recording, recording_options(scene.path, flags.realtime));
   }
+  std::unique_ptr<Devices> devices;
+  if (!recorded && !scene.sources.empty()) {
+    if (!flags.realtime)
+      log_warn("{}: its devices send in real time; only --realtime listens to them", flags.scene);
+    NERITIC_TRY(devices,
+                Devices::open(scene, world, physics->inbox(), DeviceSource::Pace::kThread));
+    recording.sounds = devices->sounds();
+  }
   const StepFiles files(flags.files, scene.title, recording, *physics);
   std::vector<StepSink*> sinks{&watch};
   for (StepSink* sink : files.sinks()) sinks.push_back(sink);
@@ -78,19 +85,11 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,
     sinks.push_back(&replay->check);
     seconds = replay->seconds();
   }
-  const bool live = !replay && !scene.sources.empty();
-  std::unique_ptr<Devices> devices;
   std::optional<DeviceNotes> device_notes;
-  if (live) {
-    if (!flags.realtime)
-      log_warn("{}: its devices send in real time; only --realtime listens to them", flags.scene);
-    NERITIC_TRY(devices,
-                Devices::open(scene, world, physics->inbox(), DeviceSource::Pace::kThread));
+  if (devices) {
     for (SampleSource* source : devices->sources()) sources.push_back(source);
     sinks.push_back(&device_notes.emplace(*devices));
   }
-  std::optional<SoundRecord> sound;
-  if (devices && files.recording()) sinks.push_back(&sound.emplace(*devices, *files.recording()));
   std::unique_ptr<Markers> markers;
   if (!flags.markers.empty()) {
     if (!flags.realtime)

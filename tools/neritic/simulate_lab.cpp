@@ -10,7 +10,6 @@
 #include "tools/neritic/dive_told.hpp"
 #include "tools/neritic/recorded_scene.hpp"
 #include "tools/neritic/simulate.hpp"
-#include "tools/neritic/sound_record.hpp"
 #include "tools/neritic/step_files.hpp"
 
 namespace neritic::tools {
@@ -62,12 +61,11 @@ Status simulate_lab(const SimulateFlags& flags, const scene::Scene& scene,
   RecordingOptions recording;
   if (!flags.files.record.empty()) {
     NERITIC_TRY(recording, recording_options(scene.path, false));
+    recording.sounds = devices->sounds();
   }
   const StepFiles files(flags.files, scene.title, recording, *physics);
   std::vector<StepSink*> sinks{&watch};
   for (StepSink* sink : files.sinks()) sinks.push_back(sink);
-  std::optional<SoundRecord> sound;
-  if (files.recording()) sinks.push_back(&sound.emplace(*devices, *files.recording()));
   const double seconds = flags.seconds.value_or(kLabSeconds), step_s = world.step_s();
   StepProgress progress("second", seconds);
   sinks.push_back(&progress);

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <map>
 
+#include "engine/recording/mcap_reader.hpp"
+#include "testbed/record/recording_switch.hpp"
 #include "tests/testbed/simulation/devices.hpp"
 #include "tests/testbed/simulation/replay_run.hpp"
 
@@ -56,6 +59,49 @@ TEST(RecordingFile, AKilledRunReplaysUpToItsLastSecond) {
   EXPECT_EQ(log->hashes, kept.hashes);
   EXPECT_EQ(log->sources, kept.sources);
   EXPECT_EQ(log->entries.size(), 900u);
+}
+// Messages of a topic.
+class TopicCount final : public recording::McapVisitor {
+ public:
+  Status channel(std::uint16_t id, const recording::McapChannel& channel) override {
+    topics_[id] = channel.topic;
+    return {};
+  }
+  Status message(const recording::McapMessage& message) override {
+    ++counts[topics_[message.channel]];
+    return {};
+  }
+  std::map<std::string, int> counts;
+
+ private:
+  std::map<std::uint16_t, std::string> topics_;
+};
+
+TEST(RecordingFile, ARecordingByKeyHasTheSoundFromItsBeginningToItsEnd) {
+  const test::ScratchFolder folder;
+  TestDive dive = dive_of(hover_text(""));
+  SoundQueue heard;
+  const auto hear = [&](int packets) {
+    for (int i = 0; i < packets; ++i)
+      heard.push(20'000'000 * i, 16'000.0, std::vector<float>(320, 0.25F));
+  };
+  RecordingSwitch key(*dive.world);
+  for (const char* name : {"a", "b"}) {
+    hear(5);  // nobody records it
+    RecordingOptions options;
+    options.sounds = {{"mic", &heard}};
+    key.begin(*dive.simulation, folder / name, std::move(options));
+    hear(3);
+    dive.simulation->advance(1);
+    ASSERT_TRUE(key.accept(dive.simulation->newest(), {}).ok());
+    ASSERT_TRUE(key.end()->finish().ok());
+    hear(7);  // nobody any more
+    EXPECT_TRUE(heard.take().empty());
+    const auto source = recording::open_mcap(folder / (std::string(name) + ".mcap")).value();
+    TopicCount topics;
+    ASSERT_TRUE(recording::read_mcap(*source, name, topics).ok());
+    EXPECT_EQ(topics.counts["/mic/sound"], 3) << name;
+  }
 }
 
 }  // namespace

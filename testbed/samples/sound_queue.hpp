@@ -1,8 +1,9 @@
-// The sound that a microphone heard, from the device's thread to whoever records it. Bounded: half
-// a minute that nobody takes is dropped. Any thread.
+// The sound that a microphone heard, from the device's thread to the recording that wants it, one
+// at a time. Bounded: half a minute that nobody takes is dropped. Any thread.
 #pragma once
 
 #include <mutex>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -21,10 +22,12 @@ class SoundQueue {
  public:
   static constexpr double kMost_s = 30.0;
 
-  // Until somebody wants it nothing is kept.
-  void want() {
+  // Nothing is kept while nobody wants it.
+  void want(bool wanted) {
     const std::lock_guard lock(mutex_);
-    wanted_ = true;
+    wanted_ = wanted;
+    waiting_.clear();
+    waiting_s_ = 0.0;
   }
   void push(TimeNs captured_ns, double rate_hz, const std::vector<float>& samples) {
     const std::lock_guard lock(mutex_);
@@ -44,6 +47,12 @@ class SoundQueue {
   bool wanted_ = false;
   double waiting_s_ = 0.0;
   std::vector<HeardSound> waiting_;
+};
+
+// What the source of that name hears.
+struct SoundSource {
+  std::string name;
+  SoundQueue* sound = nullptr;
 };
 
 }  // namespace neritic::testbed
