@@ -1,6 +1,8 @@
 #include "engine/net/mxtp.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "engine/core/refusal.hpp"
@@ -9,6 +11,9 @@ namespace neritic::net {
 namespace {
 
 constexpr std::string_view kSuitMagic = "MXTP";
+// Of an item on the wire, where all items of the type are of one size.
+constexpr std::size_t kEulerBytes = 28, kPoseBytes = 32, kJointBytes = 20, kLinearBytes = 40,
+                      kAngularBytes = 44;
 
 int digit(std::byte byte) {
   const int value = std::to_integer<int>(byte) - '0';
@@ -158,19 +163,36 @@ Status read_time_code(Bytes payload, MxtpDatagram& out) {
   return {};
 }
 
+std::optional<std::size_t> fixed_item_bytes(int type) {
+  switch (type) {
+    case 1:
+      return kEulerBytes;
+    case 2:
+      return kPoseBytes;
+    case 20:
+      return kJointBytes;
+    case 21:
+      return kLinearBytes;
+    case 22:
+      return kAngularBytes;
+    default:
+      return {};
+  }
+}
+
 Status read_payload(Bytes payload, MxtpDatagram& out) {
   const std::size_t items = out.header.items;
   switch (out.header.type) {
     case 1:
-      return read_sized(payload, 28, MxtpEuler{}, out);
+      return read_sized(payload, kEulerBytes, MxtpEuler{}, out);
     case 2:
-      return read_sized(payload, 32, MxtpPose{}, out);
+      return read_sized(payload, kPoseBytes, MxtpPose{}, out);
     case 20:
-      return read_sized(payload, 20, MxtpJoint{}, out);
+      return read_sized(payload, kJointBytes, MxtpJoint{}, out);
     case 21:
-      return read_sized(payload, 40, MxtpLinear{}, out);
+      return read_sized(payload, kLinearBytes, MxtpLinear{}, out);
     case 22:
-      return read_sized(payload, 44, MxtpAngular{}, out);
+      return read_sized(payload, kAngularBytes, MxtpAngular{}, out);
     case 23: {
       const bool whole = payload.size() == 68 * items;
       return read_sized(payload, whole ? 68 : 44, MxtpTracker{.whole = whole}, out);
@@ -203,7 +225,18 @@ Result<MxtpDatagram> decode_mxtp(Bytes bytes) {
 Result<std::size_t> mxtp_length(Bytes stream) {
   if (stream.size() < kMxtpHeader) return std::size_t{0};
   NERITIC_TRY(const MxtpHeader header, decode_header(stream));
-  return kMxtpHeader + header.payload;
+  if (header.payload != 0) return kMxtpHeader + header.payload;
+  if (const auto item_bytes = fixed_item_bytes(header.type))
+    return kMxtpHeader + *item_bytes * header.items;
+  const auto next = std::search(
+      stream.begin() + kMxtpHeader, stream.end(), kSuitMagic.begin(), kSuitMagic.end(),
+      [](std::byte byte, char letter) { return byte == static_cast<std::byte>(letter); });
+  const auto end = static_cast<std::size_t>(next - stream.begin());
+  if (end < stream.size()) return end;
+  if (stream.size() > kMxtpMostBytes)
+    return refusal("MXTP", fmt::format("{} bytes without an end", stream.size()),
+                   fmt::format("up to {} before the next datagram", kMxtpMostBytes));
+  return std::size_t{0};
 }
 
 void put_mxtp_number(std::span<std::byte> datagram, std::uint32_t sample, std::uint32_t time_ms) {

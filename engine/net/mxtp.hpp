@@ -89,8 +89,9 @@ struct MxtpDatagram {
 // kBadInput: no MXTP, or its lengths do not agree. kUnsupported: another type.
 Result<MxtpDatagram> decode_mxtp(Bytes bytes);
 
-// The bytes of the datagram at the front of a stream; 0: its header is not whole yet.
-// kBadInput: no datagram begins there.
+// The bytes of the datagram at the front of a stream; 0: not known yet. Where an older program
+// leaves the payload's length 0, items of types 01, 02 and 20 to 22 give it; any other datagram
+// ends where the next begins. kBadInput: no datagram begins there, or it has no end.
 Result<std::size_t> mxtp_length(Bytes stream);
 
 // Puts another number and time into a datagram. Precondition: it is a whole header at least.

@@ -76,27 +76,37 @@ TEST(SuitAdapter, TheVectorsFrameIsWholeWithItsSecondPartAndBendsTheAbdomen) {
   expect_adds_up(suit.counts());
 }
 
-TEST(SuitAdapter, AStreamInPiecesGivesTheSameFrames) {
-  Bench bench("suit = \"mxtp tcp\"\n");
-  SuitAdapter suit(0, true);
-  SimulatedDeviceOptions options;
-  options.rate_hz = 50.0;
-  const auto device = simulated_device("mxtp", options);
-  std::vector<std::byte> wire;
-  for (int ms = 1; ms <= 2000; ++ms)
-    device->run({}, TimeNs{ms} * kMillisecond_ns, [&](std::vector<std::byte> bytes, TimeNs) {
+// Older programs leave the payload's length 0.
+TEST(SuitAdapter, AStreamInPiecesGivesTheSameFramesWithAndWithoutTheirLength) {
+  for (const bool with_length : {true, false}) {
+    Bench bench("suit = \"mxtp tcp\"\n");
+    SuitAdapter suit(0, true);
+    SimulatedDeviceOptions options;
+    options.rate_hz = 50.0;
+    const auto device = simulated_device("mxtp", options);
+    std::vector<std::byte> wire;
+    const auto put = [&](std::vector<std::byte> bytes) {
+      if (!with_length) bytes[22] = bytes[23] = std::byte{0};
       wire.insert(wire.end(), bytes.begin(), bytes.end());
-      if (ms / 20 == 50) wire.insert(wire.end(), 77, std::byte{'M'});  // what is none in between
-    });
-  for (std::size_t at = 0, i = 0; at < wire.size(); ++i) {
-    const std::size_t some = std::min<std::size_t>(1 + mix64(i) % 3000, wire.size() - at);
-    suit.take(net::Bytes(wire).subspan(at, some), false, static_cast<TimeNs>(at), bench.out);
-    at += some;
+    };
+    for (int ms = 1; ms <= 2000; ++ms)
+      device->run({}, TimeNs{ms} * kMillisecond_ns, [&](std::vector<std::byte> bytes, TimeNs) {
+        put(bytes);
+        // A type that nothing uses, of a length that its items do not tell.
+        bytes[4] = std::byte{'2'}, bytes[5] = std::byte{'4'};
+        put(bytes);
+        if (ms / 20 == 50) wire.insert(wire.end(), 77, std::byte{'M'});  // what is none in between
+      });
+    for (std::size_t at = 0, i = 0; at < wire.size(); ++i) {
+      const std::size_t some = std::min<std::size_t>(1 + mix64(i) % 3000, wire.size() - at);
+      suit.take(net::Bytes(wire).subspan(at, some), false, static_cast<TimeNs>(at), bench.out);
+      at += some;
+    }
+    EXPECT_EQ(bench.samples().size(), 200u) << with_length;
+    EXPECT_GE(suit.counts().malformed, 1u);
+    EXPECT_EQ(suit.counts().used, 200u) << with_length;
+    expect_adds_up(suit.counts());
   }
-  EXPECT_EQ(bench.samples().size(), 200u);
-  EXPECT_GE(suit.counts().malformed, 1u);
-  EXPECT_EQ(suit.counts().used, 200u);
-  expect_adds_up(suit.counts());
 }
 
 // The samples' number and time begin again together, without a pause.
