@@ -1,4 +1,5 @@
 """The parts of tools/experiment that need no program: orders, scores, studies, intervals, power. Exit 77: skipped."""
+import io
 import math
 import os
 import pathlib
@@ -190,6 +191,54 @@ class Runs(unittest.TestCase):
         for text in ("run_limit_s=0", "run_limit_s=x", "run_limit_s=[1,2]"):
             with self.assertRaisesRegex(scenario.Refused, r"run_limit_s: found .*; accepted: a number"):
                 scenario.Scenario(path, {"echo_sounder": echo_sounder}, sets=[text])
+
+
+class Progress(unittest.TestCase):
+    class File(io.StringIO):
+        """Stands in for stderr."""
+
+        def __init__(self, terminal):
+            super().__init__()
+            self.terminal = terminal
+
+        def isatty(self):
+            return self.terminal
+
+    def said(self, terminal=False, quiet=False):
+        """Of four runs of 50 s, one kept from before, looked at each second."""
+        now, told = [0.0], self.File(terminal)
+        with unittest.mock.patch.object(sys, "stderr", told):
+            progress = runner.Progress("dive", 4, 1, quiet, clock=lambda: now[0])
+            while progress.done < 4:
+                now[0] += 1.0
+                progress.step() if now[0] % 50 == 0 else progress.show()
+            progress.end()
+        return told.getvalue()
+
+    def test_a_file_gets_a_line_each_half_minute(self):
+        self.assertEqual(self.said().splitlines(), [
+            "note: dive: run 1 of 4",
+            "note: dive: run 2 of 4, 2:00 left",
+            "note: dive: run 2 of 4, 3:00 left",
+            "note: dive: run 3 of 4, 1:00 left",
+            "note: dive: run 4 of 4"])
+
+    def test_a_terminal_gets_one_line_that_is_rewritten_and_quiet_nothing(self):
+        told = self.said(terminal=True)
+        self.assertNotIn("\n", told)
+        self.assertIn("\rdive: run 3 of 4, 50 s left", told)
+        self.assertEqual(self.said(quiet=True) + self.said(terminal=True, quiet=True), "")
+
+    def test_a_run_that_lasts_is_told_while_it_lasts(self):
+        told = self.File(False)
+        with unittest.mock.patch.object(sys, "stderr", told), unittest.mock.patch.object(runner, "SAY_EVERY_S", 0.3), \
+                unittest.mock.patch.object(runner, "LOOK_EVERY_S", 0.1), tempfile.TemporaryDirectory() as out:
+            runs = [scenario.Run(i, {}, i, {}) for i in (0, 1)]
+            kind = SimpleNamespace(run=lambda settings, seed, tools: time.sleep(1.5) or ({"m": 1.0}, {}))
+            plan = SimpleNamespace(name="slow", kind_name="slow", kind=kind, run_limit_s=60.0, list_runs=lambda: runs, fingerprint=lambda: "")
+            runner.run_all(plan, out, "none", 1, False, False)
+        self.assertIn("note: slow: run 0 of 2\n", told.getvalue())
+        self.assertRegex(told.getvalue(), r"note: slow: run 1 of 2, 0:0\d left\n")
 
 
 class Refusals(unittest.TestCase):

@@ -2,6 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/flags.hpp"
 
@@ -85,6 +89,27 @@ TEST(Progress, SaysHowLongTheRestTakes) {
   EXPECT_EQ(progress_line("frame", 99, 100, 990.0), "frame 99 of 100, 0:10 left");
   EXPECT_EQ(progress_line("point", 10, 100, 1000.0), "point 10 of 100, 2 h 30 min left");
   EXPECT_EQ(progress_line("frame", 100, 100, 60.0), "frame 100 of 100");
+}
+
+// Also while one step lasts, and nothing after the last.
+TEST(Progress, SaysHowFarItIsWithoutATerminal) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress("frame", 4, 0.05);
+    progress.step();
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    progress.now("a slow one");
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  }
+  {
+    const Progress one("frame", 1, 0.05);
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+  const std::string told = testing::internal::GetCapturedStderr();
+  EXPECT_THAT(told, MatchesRegex("(note: frame 1 of 4, 0:0[0-9] left\n)+"
+                                 "(note: frame 1 of 4, 0:0[0-9] left: a slow one\n)+"));
+  EXPECT_GE(std::ranges::count(told, '\n'), 4);
+  EXPECT_LE(std::ranges::count(told, '\n'), 16);
 }
 
 TEST(CommandLine, NoFrameIsNoNumberOfFrames) {

@@ -7,6 +7,7 @@ ends or does not return within the scenario's run_limit_s is a failed run; the o
 import collections
 import ctypes
 import json
+import math
 import multiprocessing
 import multiprocessing.connection
 import os
@@ -24,6 +25,8 @@ FORMAT = 3
 GRACE_S = 5.0  # for a run that is stopped to close what it opened
 PERSON_GRACE_S = 40.0  # of a person's dive, whose recording is ended
 PR_SET_PDEATHSIG = 1  # linux/prctl.h
+SAY_EVERY_S = 30.0  # a line of progress where the output is no terminal
+LOOK_EVERY_S = 1.0  # whether one is due
 FORKS = multiprocessing.get_context("fork")
 
 
@@ -103,22 +106,40 @@ class Tools:
 
 
 class Progress:
-    """One line on a terminal, with the time left; nothing where the output is no terminal."""
+    """How far it is, with the time left: one line on a terminal that is rewritten; elsewhere a line every SAY_EVERY_S."""
 
-    def __init__(self, name, total, done, quiet):
-        self.name, self.total, self.before, self.done = name, total, done, done
-        self.begun, self.on = time.monotonic(), sys.stderr.isatty() and not quiet
+    def __init__(self, name, total, done, quiet, clock=time.monotonic):
+        self.name, self.total, self.before, self.done, self.clock = name, total, done, done, clock
+        self.begun = self.said = clock()
+        self.terminal, self.quiet = sys.stderr.isatty(), quiet
 
     def step(self):
         self.done += 1
-        if self.on:
-            fresh = self.done - self.before
-            left = (time.monotonic() - self.begun) / fresh * (self.total - self.done)
-            print(f"\r{self.name}: run {self.done} of {self.total}, {left:.0f} s left   ", end="", file=sys.stderr)
+        self.show()
+
+    def show(self):
+        """Called at least every LOOK_EVERY_S: where runs take minutes, what is said says so too."""
+        if self.quiet or self.total == 0:
+            return
+        fresh, now = self.done - self.before, self.clock()
+        left_s = (now - self.begun) / fresh * (self.total - self.done) if fresh else None
+        if self.terminal:
+            if fresh:
+                print(f"\r{self.name}: run {self.done} of {self.total}, {left_s:.0f} s left   ", end="", file=sys.stderr, flush=True)
+        elif now - self.said >= SAY_EVERY_S:
+            self.said = now
+            left = f", {in_words(left_s)} left" if fresh and self.done < self.total else ""
+            print(f"note: {self.name}: run {self.done} of {self.total}{left}", file=sys.stderr, flush=True)
 
     def end(self):
-        if self.on:
-            print("\r" + " " * 60 + "\r", end="", file=sys.stderr)
+        if self.terminal and not self.quiet:
+            print("\r" + " " * 60 + "\r", end="", file=sys.stderr, flush=True)
+
+
+def in_words(seconds):
+    """A time as the program's own progress has it: 3:05, or 2 h 30 min."""
+    whole_s = math.ceil(seconds)
+    return f"{whole_s // 3600} h {whole_s // 60 % 60:02} min" if whole_s >= 3600 else f"{whole_s // 60}:{whole_s % 60:02}"
 
 
 def read_results(path):
@@ -161,6 +182,9 @@ def run_all(scenario, out, program, workers, resume, quiet):
     try:
         with open(path, "a", encoding="utf-8") as file:
             for result in made:
+                if result is None:
+                    progress.show()
+                    continue
                 kept[json.dumps([result["condition"], result["seed"]], sort_keys=True)] = result
                 file.write(json.dumps(result) + "\n")
                 file.flush()
@@ -254,7 +278,7 @@ def _work(pipe, do, program, out):
 
 
 def _results(do, runs, program, workers, out, limit_s, grace_s):
-    """The result of each run, as they end."""
+    """The result of each run, as they end; None where none has ended for LOOK_EVERY_S."""
     waiting, pool = collections.deque(enumerate(runs)), []
     if not waiting:
         return
@@ -275,7 +299,9 @@ def _results(do, runs, program, workers, out, limit_s, grace_s):
                     worker.begin(run, os.path.join(base, str(number)))
             busy = [w for w in pool if w.run]
             left_s = limit_s - time.monotonic() + min(w.begun for w in busy)
-            multiprocessing.connection.wait([x for w in busy for x in (w.pipe, w.process.sentinel)], max(0.0, left_s) + 0.01)
+            multiprocessing.connection.wait([x for w in busy for x in (w.pipe, w.process.sentinel)],
+                                            min(max(0.0, left_s) + 0.01, LOOK_EVERY_S))
+            yield None
             for worker in busy:
                 result = worker.take(limit_s)
                 if result is not None:

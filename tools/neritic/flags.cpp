@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 
@@ -61,45 +62,56 @@ std::string progress_line(const std::string& what, std::uint64_t done, std::uint
   return line + fmt::format(", {}:{:02} left", whole_s / 60, whole_s % 60);
 }
 
-Progress::Progress(std::string what, std::uint64_t total)
+Progress::Progress(std::string what, std::uint64_t total, double say_every_s)
     : what_(std::move(what)),
       total_(total),
       begun_ns_(now_ns()),
-      said_ns_(begun_ns_),
       shown_(total > 1),
-      terminal_(isatty(STDERR_FILENO)) {}
+      terminal_(isatty(STDERR_FILENO)) {
+  if (!shown_ || terminal_) return;
+  teller_ = std::jthread([this, say_every_s](const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    auto due = std::chrono::steady_clock::now();
+    while (true) {
+      due += std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+          std::chrono::duration<double>(say_every_s));
+      ends_.wait_until(lock, stop, due, [] { return false; });
+      if (stop.stop_requested()) return;
+      log_line(LogLevel::kWarnings, line());
+    }
+  });
+}
 
 void Progress::step() {
+  const std::scoped_lock lock(mutex_);
   ++done_;
   show();
 }
 
 void Progress::now(std::string doing) {
+  const std::scoped_lock lock(mutex_);
   doing_ = std::move(doing);
   show();
 }
 
 void Progress::say(const std::string& line) {
+  const std::scoped_lock lock(mutex_);
   if (shown_ && terminal_) fmt::print(stderr, "\r\033[K");
   log_line(LogLevel::kWarnings, line);
   doing_.clear();
   show();
 }
 
+std::string Progress::line() const {
+  return progress_line(what_, done_, total_, 1e-3 * to_ms(now_ns() - begun_ns_)) +
+         (doing_.empty() ? "" : ": " + doing_);
+}
+
 void Progress::show() {
-  constexpr double kSayEvery_s = 30.0;
-  if (!shown_) return;
-  const TimeNs now = now_ns();
-  const std::string line = progress_line(what_, done_, total_, 1e-3 * to_ms(now - begun_ns_)) +
-                           (doing_.empty() ? "" : ": " + doing_);
-  if (terminal_) {
-    // A line that was longer leaves nothing behind.
-    fmt::print(stderr, "\r{}\033[K", line);
-    std::fflush(stderr);
-  } else if (1e-3 * to_ms(now - said_ns_) >= kSayEvery_s) {
-    said_ns_ = now;
-    log_line(LogLevel::kWarnings, line);
-  }
+  if (!shown_ || !terminal_) return;
+  // A line that was longer leaves nothing behind.
+  fmt::print(stderr, "\r{}\033[K", line());
+  std::fflush(stderr);
 }
 
 Progress::~Progress() {
