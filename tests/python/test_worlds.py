@@ -1,8 +1,11 @@
 """Worlds in this process: ticks, commands, observations, states, links, recordings and refusals."""
 
 import asyncio
+import contextlib
 import copy
+import errno
 import inspect
+import io
 import os
 import pickle
 import shutil
@@ -11,6 +14,7 @@ import tempfile
 import threading
 import time
 import unittest
+import unittest.mock
 from pathlib import Path
 
 import numpy as np
@@ -386,6 +390,27 @@ class Worlds(unittest.TestCase):
                 raise
             self.skipTest(str(error))
         self.assertLess(min(spent_ms), 0.2)  # the least: other programs run beside
+
+    def told_of_speed(self, **patched):
+        """(exit status, standard output, standard error) of the table, its long measurements left out."""
+        parts = {"tick_above_step_us": lambda: [1.0], "image_ms": lambda: [0.1], "env_steps": lambda *_: (1e6, 1.0), **patched}
+        out, err = io.StringIO(), io.StringIO()
+        with unittest.mock.patch.multiple(speed, **parts), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            status = speed.main()
+        return status, out.getvalue(), err.getvalue()
+
+    def test_the_table_of_speed_tells_what_it_lacks_in_one_line(self):
+        status, out, err = self.told_of_speed(PROGRAM="/nowhere/neritic")
+        self.assertEqual((status, err), (1, ""))
+        self.assertIn("an image from a server: /nowhere/neritic: No such file or directory\n", out)
+        self.assertIn("follow, 4096 environments", out)  # the others are measured
+
+        def read_only(*_, **__):
+            raise OSError(errno.EROFS, os.strerror(errno.EROFS), "/tmp/x")
+
+        with unittest.mock.patch.object(tempfile, "TemporaryDirectory", read_only):
+            status, _, err = self.told_of_speed(tick_above_step_us=speed.tick_above_step_us)
+        self.assertEqual((status, err), (1, "neritic.speed: /tmp/x: Read-only file system\n"))
 
     def test_a_recording_is_made(self):
         world = neritic.open(MISSION, seed=1)

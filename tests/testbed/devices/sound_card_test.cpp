@@ -57,6 +57,32 @@ TEST(SoundCard, IsHeardAndIfPulledOutLookedForAgain) {
   EXPECT_EQ(alsa.opened(), 0);
 }
 
+// Longer than the 20 s over which packets count as lost one by one: a restart. The first packet, of
+// 20 ms, is the one that is far ahead; the next one confirms it (CounterTrack).
+TEST(SoundCard, OneThatIsAbsentForMoreThanTwentySecondsComesBack) {
+  test::FakeAlsa alsa;
+  const std::vector<std::int16_t> sound(10 * kPacket, 1000);
+  SoundLab lab;
+  ASSERT_TRUE(lab.source);
+  alsa.push(sound);
+  ASSERT_TRUE(lab.until([&] { return lab.counts().used == 10; }));
+  alsa.plug(false);
+  ASSERT_TRUE(lab.until([&] { return alsa.opened() == 0; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(21'500));
+  EXPECT_EQ(lab.source->health().trouble, "the card: No such device");
+  EXPECT_EQ(alsa.opens(), 1);
+  alsa.plug(true);
+  ASSERT_TRUE(lab.until([&] { return alsa.opens() == 2; }));
+  alsa.push(sound);
+  ASSERT_TRUE(lab.until([&] { return lab.counts().used == 19; }));
+  EXPECT_EQ(lab.source->health().trouble, "");
+  EXPECT_EQ(lab.counts().restarts, 1u);
+  EXPECT_EQ(lab.counts().malformed, 1u);
+  EXPECT_EQ(lab.counts().lost, 0u);
+  EXPECT_EQ(lab.counts().repeated + lab.counts().older, 0u);
+  expect_adds_up(lab.counts());
+}
+
 TEST(SoundCard, OneThatIsNotThereIsRefusedInOneLine) {
   test::FakeAlsa alsa;
   alsa.plug(false);

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Iterator
@@ -135,23 +136,47 @@ def env_steps(task: str, num_envs: int, seconds: float = 2.0) -> tuple[float, fl
     return steps / (time.perf_counter() - begun), 1e6 * (time.process_time() - spent) / steps
 
 
-def main() -> None:
-    """Prints the table."""
+def _words(error: Exception) -> str:
+    """One line of what went wrong outside."""
+    if isinstance(error, OSError) and error.filename is not None:
+        return f"{error.filename}: {error.strerror}"
+    return " ".join(str(error).split())
+
+
+def _table() -> bool:
+    """Prints it; false: an image could not be had."""
     def line(what: str, unit: str, times: list[float]) -> None:
         print(f"{what}: least {min(times):.3g} {unit}, median {np.median(times):.3g}, largest {max(times):.3g}")
 
+    whole = True
     print(f"load average {os.getloadavg()[0]:.1f}, {os.cpu_count()} cores")
     line("a tick above its step", "us", tick_above_step_us())
     for what, images in (("in this process", image_ms), ("from a server", remote_image_ms)):
         try:
             line(f"an image of {BINS} x {BINS} floats {what}", "ms", images())
-        except Error as error:
-            print(f"an image {what}: {error}")
+        except (Error, OSError) as error:
+            whole = False
+            print(f"an image {what}: {_words(error)}")
     for task in TASKS:
         for num_envs in (256, 4096):
             rate, cost_us = env_steps(task, num_envs)
             print(f"{task}, {num_envs} environments: {rate / 1e3:.0f} 000 steps a second, {cost_us:.2f} us of a core each")
+    return whole
+
+
+def main() -> int:
+    """Prints the table. 0; 1 where something could not be measured, with a line that says why."""
+    try:
+        whole = _table()
+        sys.stdout.flush()
+        return 0 if whole else 1
+    except BrokenPipeError:  # whoever read it, as head, has enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except (Error, OSError) as error:
+        print(f"neritic.speed: {_words(error)}", file=sys.stderr)
+        return 1
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())
