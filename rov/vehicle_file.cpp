@@ -198,7 +198,14 @@ Result<VehicleFile> parse_vehicle(std::string_view text, const std::string& name
   const std::string curve = root["thrust_table"].text();
   if (file.failed()) return file.error();
   if (!curve.empty()) {
-    NERITIC_TRY(out.curve, ThrustCurve::read(curve));
+    Result<ThrustCurve> read = ThrustCurve::read(curve);
+    if (!read.ok())
+      return bad_input(
+          "{}: thrust_table: {}{}", name, read.error().message,
+          read.error().message.find("accepted: ") == std::string::npos
+              ? "; accepted: a .csv of pulse widths and newtons, pwm_us,thrust_n_16v,..."
+              : "");
+    out.curve = std::move(read).value();
   }
   const Result<Vehicle> vehicle = make_vehicle(p);
   if (!vehicle.ok()) return bad_input("{}: {}", name, vehicle.error().message);

@@ -96,7 +96,11 @@ Result<MapFile> read_map(const std::filesystem::path& path, MapUse use) {
     NERITIC_TRY(const ImageU8 image, scene::read_image8(path));
     map = from_raster(path, image, MapFile::Coding::kCoded8);
   } else {
-    if (!std::filesystem::exists(path))
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (status.type() == std::filesystem::file_type::none)
+      return bad_input("{}: cannot be read: {}", path.string(), error.message());
+    if (!std::filesystem::exists(status))
       return bad_input("{}: no such file or folder", path.string());
     return refusal(path.string(), fmt::format("a file named '{}'", extension),
                    ".npy, .npz, .png, .pgm, .pfm or .exr");

@@ -22,6 +22,9 @@ template <class Buffer>
 Status read_into(const fs::path& path, Buffer& out) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
+  // Links that lead round in a loop, a folder that may not be entered.
+  if (status.type() == fs::file_type::none)
+    return bad_input("{}: cannot be read: {}", path.string(), error.message());
   if (!fs::exists(status)) return bad_input("{}: no such file", path.string());
   if (!fs::is_regular_file(status)) return bad_input("{}: not a plain file", path.string());
   const auto size = fs::file_size(path, error);
@@ -111,7 +114,8 @@ Status remove_file(const fs::path& path) {
 Status make_folder(const fs::path& path) {
   std::error_code error;
   fs::create_directories(path, error);
-  if (error || !fs::is_directory(path))
+  std::error_code not_there;
+  if (error || !fs::is_directory(path, not_there))
     return failure(ErrorCode::kIo, "{}: the folder cannot be made{}", path.string(),
                    error ? ": " + error.message() : std::string());
   return {};

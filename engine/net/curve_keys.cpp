@@ -74,7 +74,12 @@ Status make_keys(const fs::path& folder, const std::string& client) {
   const fs::path clients = folder / "clients", of_client = clients / (client + ".public");
   if (!client.empty() && (!is_word(client) || client == "server"))
     return refusal("--client", "\"" + client + "\"", "letters, digits, - and _, not server");
-  if (!client.empty() && (fs::exists(of_client) || fs::exists(folder / (client + ".secret"))))
+  // A link that leads nowhere or round in a loop is there too: nothing is written through it.
+  const auto there = [](const fs::path& path) {
+    std::error_code error;
+    return fs::exists(fs::symlink_status(path, error));
+  };
+  if (!client.empty() && (there(of_client) || there(folder / (client + ".secret"))))
     return refusal(of_client.string(), "a client that has its keys", "a new name");
   NERITIC_TRY_STATUS(make_folder(clients));
   const auto make = [&](const fs::path& secret, const fs::path& open) -> Status {
@@ -82,7 +87,9 @@ Status make_keys(const fs::path& folder, const std::string& client) {
     NERITIC_TRY_STATUS(write_secret(secret, keys));
     return write_public(open, keys);
   };
-  if (!fs::exists(folder / "server.secret"))
+  if (there(folder / "server.secret"))
+    NERITIC_TRY_STATUS(read_secret(folder / "server.secret"));
+  else
     NERITIC_TRY_STATUS(make(folder / "server.secret", folder / "server.public"));
   return client.empty() ? Status() : make(folder / (client + ".secret"), of_client);
 }
@@ -111,8 +118,9 @@ Result<ServerKeys> read_server_keys(const fs::path& folder) {
   NERITIC_TRY(keys.server, read_secret(folder / "server.secret"));
   std::vector<fs::path> files;
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder / "clients", error))
-    if (entry.path().extension() == ".public") files.push_back(entry.path());
+  for (fs::directory_iterator at(folder / "clients", error), end; !error && at != end;
+       at.increment(error))
+    if (at->path().extension() == ".public") files.push_back(at->path());
   std::ranges::sort(files);
   for (const fs::path& file : files) {
     NERITIC_TRY(const std::string key, read_public(file));

@@ -15,7 +15,8 @@ std::filesystem::path marks_path(const PhysioFlags& flags) {
   std::filesystem::path beside = flags.file;
   if (beside.extension() == ".csv" || beside.extension() == ".wav") return {};
   beside.replace_extension(".atr");
-  return std::filesystem::exists(beside) ? beside : std::filesystem::path();
+  std::error_code error;
+  return std::filesystem::exists(beside, error) ? beside : std::filesystem::path();
 }
 
 std::string rate_words(double bpm) {

@@ -36,7 +36,8 @@ void tell(const Server::Counts& counts, const World& world, std::uint64_t first_
 Status run_serve(const ServeFlags& flags) {
   const Interrupt interrupt;
   NERITIC_TRY(const ServerOptions options, options_of(flags));
-  if (!flags.recordings.empty() && !std::filesystem::is_directory(flags.recordings))
+  std::error_code error;
+  if (!flags.recordings.empty() && !std::filesystem::is_directory(flags.recordings, error))
     return refusal("--recordings", fmt::format("{}, no folder", flags.recordings.string()),
                    "a folder that there is");
   NERITIC_TRY(const auto world, World::open(flags.scene, {.seed = flags.seed,

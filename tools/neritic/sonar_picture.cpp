@@ -108,7 +108,8 @@ Status write_waterfall(const SonarJob& job, const std::vector<sonar::FrameFiles>
       {.n_range = o.n_range, .range_min_m = o.range_min_m, .range_max_m = o.range_max_m});
   for (const sonar::FrameFiles& frame : frames) {
     const fs::path path = job.flags.out / frame.name / "sonar.npy";
-    if (!fs::exists(path)) continue;  // skipped
+    std::error_code error;
+    if (!fs::exists(path, error)) continue;  // skipped
     NERITIC_TRY(const NpyArray array, read_npy(path));
     const std::vector<double> values = array.to_doubles();
     if (values.size() != 2 * std::size_t{o.n_range})
