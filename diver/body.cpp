@@ -443,7 +443,9 @@ Result<Body> make_body(const BodyParameters& parameters) {
 }
 
 double pressure_at(const Body& body, double depth_m) {
-  return body.surface_pa + body.water_kg_m3 * kGravity_m_s2 * std::max(depth_m, 0.0);
+  const double above_kg_m2 = body.layers ? body.layers->mass_above_kg_m2(depth_m)
+                                         : body.water_kg_m3 * std::max(depth_m, 0.0);
+  return body.surface_pa + kGravity_m_s2 * above_kg_m2;
 }
 
 double dry_mass(const Body& body) {

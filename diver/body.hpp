@@ -12,7 +12,7 @@
 #include "diver/exertion.hpp"
 #include "diver/gear.hpp"
 #include "diver/spatial_mass.hpp"
-#include "engine/core/water_column.hpp"
+#include "engine/core/layered_water.hpp"
 
 namespace neritic::diver {
 
@@ -106,9 +106,10 @@ struct Body {
   Jacket jacket;         // scaled to the body; capacity 0: none
   Model model = Model::kFull;
   double height_m = 0.0, water_kg_m3 = 0.0;
-  std::optional<WaterColumn> column = {};  // whose density carries the body, where it is named
+  // Whose density carries the body and whose weight presses on it, where it is named.
+  std::optional<LayeredWater> layers = {};
   double density_kg_m3(double depth_m) const {
-    return column ? column->density_kg_m3(depth_m) : water_kg_m3;
+    return layers ? layers->density_kg_m3(depth_m) : water_kg_m3;
   }
   double surface_pa = kSurfacePressure_pa;
   double lead_kg = 0.0;
@@ -123,7 +124,7 @@ Result<Body> make_body(const BodyParameters& parameters);
 // and jacket.
 double dry_mass(const Body& body);
 double solid_volume(const Body& body, double depth_m);
-// Pressure of the water, at or above the surface that of the air.
+// Pressure of the water, by the weight of all above; at or above the surface that of the air.
 double pressure_at(const Body& body, double depth_m);
 
 }  // namespace neritic::diver

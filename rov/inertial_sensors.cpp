@@ -21,12 +21,17 @@ ImuReading read_imu(const Imu& imu, const Vehicle& vehicle, const State& state, 
               noise.error3(imu.accelerometer, 3, sample, imu.rate_hz)};
 }
 
+double SensorWater::pressure_pa(double depth_m) const {
+  const double above_kg_m2 =
+      layers ? layers->mass_above_kg_m2(depth_m) : water_kg_m3 * std::max(0.0, depth_m);
+  return air_pa + gravity_m_s2 * above_kg_m2;
+}
+
 PressureReading read_pressure(const PressureSensor& sensor, const SensorWater& water,
                               const State& state, const NoiseSource& noise, std::uint64_t sample) {
   const Vec3 at = state.position_ned_m + state.attitude * sensor.mount.position_m;
-  double pressure = water.air_pa +
-                    water.water_kg_m3 * water.gravity_m_s2 * std::max(0.0, at.z + water.head_m) +
-                    noise.error(sensor.noise, 0, sample, sensor.rate_hz);
+  double pressure =
+      water.pressure_pa(at.z + water.head_m) + noise.error(sensor.noise, 0, sample, sensor.rate_hz);
   if (sensor.resolution_pa > 0.0)
     pressure = sensor.resolution_pa * std::round(pressure / sensor.resolution_pa);
   return {pressure, (pressure - sensor.surface_pa.value_or(water.air_pa)) /

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "engine/core/layered_water.hpp"
 #include "rov/dynamics.hpp"
 #include "rov/sensor_noise.hpp"
 
@@ -40,6 +41,16 @@ struct SensorWater {
   double water_kg_m3 = 1028.0, gravity_m_s2 = 9.82;
   double air_pa = 101325.0;
   double head_m = 0.0;  // of waves: the pressure is that of still water deeper by this much
+  // The scene's, in place of water_kg_m3 where its water is named; nullptr: it is not.
+  const LayeredWater* layers = nullptr;
+
+  // The pressure at that depth in still water: the air's and the weight of all water above.
+  double pressure_pa(double depth_m) const;
+  // The mean of one over the speed of sound between two depths, s/m; of a scene that does not name
+  // its water the one that an instrument takes.
+  double slowness_s_m(double from_depth_m, double to_depth_m, double taken_m_s) const {
+    return layers ? layers->mean_slowness_s_m(from_depth_m, to_depth_m) : 1.0 / taken_m_s;
+  }
 };
 
 struct PressureSensor {

@@ -116,6 +116,9 @@ std::array<Column, 3> gain_of(const Innovation& in, std::size_t n) {
   return gain;
 }
 
+// Far above the rounding of kErrors sums in 53 bits, far below what any noise of a sensor adds.
+constexpr double kRounding = 1e-12;
+
 void apply(NavigationState& state, const Measurement& m, const Innovation& in) {
   const auto gain = gain_of(in, m.count);
   // A = (I - K H) P, then A (I - K H)^T + K R K^T = A - (A H^T - K R) K^T.
@@ -137,6 +140,9 @@ void apply(NavigationState& state, const Measurement& m, const Innovation& in) {
   for (std::size_t r = 0; r < m.count; ++r)
     for (std::size_t i = 0; i < kErrors; ++i)
       for (std::size_t j = 0; j < kErrors; ++j) a[i][j] -= left[r][i] * gain[r][j];
+  // What is subtracted is rounded by shares of the variance before: after a measurement of
+  // something hardly known they are more than what is left, which could then be no covariance.
+  for (std::size_t i = 0; i < kErrors; ++i) a[i][i] += kRounding * state.covariance(i, i);
   store(a, state.covariance);
   Column error{};
   for (std::size_t r = 0; r < m.count; ++r)

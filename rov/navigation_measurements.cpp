@@ -61,16 +61,18 @@ Measurement beam_measurement(const NavigationModel& model, const NavigationState
   const Vec3 along_ned = state.attitude * along;
   const Vec3 arm = dvl.mount.position_m - model.imu.mount.position_m;
   const Vec3 turning = state.imu.angular_rad_s - state.bias3(kGyroBias);
-  const double expected = glm::dot(along_ned, state.velocity_ned_m_s) +
-                          glm::dot(along, glm::cross(turning, arm)) +
-                          state.bias[kBeamBias - kFirstBias + beam];
+  const double scale = 1.0 + state.bias[kBeamScale - kFirstBias];
+  const double speed =
+      glm::dot(along_ned, state.velocity_ned_m_s) + glm::dot(along, glm::cross(turning, arm));
+  const double expected = scale * speed + state.bias[kBeamBias - kFirstBias + beam];
   Measurement out;
   out.of = kVelocityError;
   out.innovation[0] = speed_m_s - expected;
-  put(out.change[0], kVelocityError, along_ned);
+  put(out.change[0], kVelocityError, scale * along_ned);
   // c . R^T (v x e) = (R c x v) . e; c . (-b x r) = -(r x c) . b
-  put(out.change[0], kAttitudeError, glm::cross(along_ned, state.velocity_ned_m_s));
-  put(out.change[0], kGyroBias, -glm::cross(arm, along));
+  put(out.change[0], kAttitudeError, scale * glm::cross(along_ned, state.velocity_ned_m_s));
+  put(out.change[0], kGyroBias, -scale * glm::cross(arm, along));
+  out.change[0][kBeamScale] = speed;
   out.change[0][kBeamBias + beam] = 1.0;
   const double gyro = model.imu.gyro.white * glm::length(arm);
   out.noise[0][0] = beam_variance(dvl, expected) + gyro * gyro;
@@ -135,7 +137,8 @@ Measurement fix_measurement(const NavigationModel& model, const NavigationState&
   const Vec3 across = level > 1e-9 ? Vec3(-out_along.y, out_along.x, 0.0) / level : Vec3(0, 1, 0);
   const Vec3 steeper = glm::cross(out_along, across);
   const double* bias = &state.bias[kUsblBias - kFirstBias];
-  const Vec3 error = bias[0] * out_along + range * (bias[1] * across + bias[2] * steeper);
+  const double along_m = bias[0] + range * state.bias[kRangeScale - kFirstBias];
+  const Vec3 error = along_m * out_along + range * (bias[1] * across + bias[2] * steeper);
   const Vec3 innovation = reading.position_ned_m - expected - error;
   const auto square = [](double x) { return x * x; };
   const double along_variance = square(usbl.range_noise.white) + square(kLeastRange_m);
@@ -156,6 +159,7 @@ Measurement fix_measurement(const NavigationModel& model, const NavigationState&
     // unit . (e x r) = (r x unit) . e
     put(out.change[i], kAttitudeError, glm::cross(arm, unit));
     put(out.change[i], kUsblBias, {out_along[axis], range * across[axis], range * steeper[axis]});
+    out.change[i][kRangeScale] = range * out_along[axis];
     for (std::size_t j = 0; j < 3; ++j) {
       const int other = static_cast<int>(j);
       const double projected = out_along[axis] * out_along[other];

@@ -11,6 +11,9 @@ constexpr double kLeastDepth_m = 3e-4, kLeastSpeed_m_s = 3e-4, kLeastHeading_rad
 // The density of sea water near the surface, over the one that the pressure sensor is set to: from
 // 1017 to 1030 kg/m^3 (EOS-80, salinity 25 to 37 and 0 to 25 degrees).
 constexpr double kWaterShare = 0.003;
+// The speed of sound over the one that an instrument is set to: from 1440 to 1545 m/s (Mackenzie
+// 1981, 25 to 37 psu, 0 to 30 degrees, to 100 m) about 1500.
+constexpr double kSoundShare = 0.02;
 
 double square(double x) {
   return x * x;
@@ -43,7 +46,7 @@ std::string missing_for_navigation(const SensorSet& sensors) {
   return missing;
 }
 
-NavigationModel navigation_model(const SensorSet& sensors) {
+NavigationModel navigation_model(const SensorSet& sensors, bool other_sound) {
   NERITIC_CHECK(sensors.imu.has_value(), "navigation without an inertial unit");
   NavigationModel out;
   out.imu = *sensors.imu;
@@ -58,6 +61,8 @@ NavigationModel navigation_model(const SensorSet& sensors) {
   add_biases(out, kAccelerometerBias, 3, out.imu.accelerometer);
   add_biases(out, kGyroBias, 3, out.imu.gyro);
   if (out.dvl) add_biases(out, kBeamBias, 4, out.dvl->noise);
+  if (out.dvl && out.dvl->sound_m_s && other_sound)
+    out.bias_variance[kBeamScale - kFirstBias] = square(kSoundShare);
   if (out.pressure) {
     add_biases(out, kPressureBias, 1, out.pressure->noise, 1.0 / pa_per_m(*out.pressure));
     out.bias_variance[kPressureScale - kFirstBias] = square(kWaterShare);
@@ -71,6 +76,7 @@ NavigationModel navigation_model(const SensorSet& sensors) {
   if (out.usbl) {
     add_biases(out, kUsblBias, 1, out.usbl->range_noise);
     add_biases(out, kUsblBias + 1, 2, out.usbl->direction_noise);
+    if (other_sound) out.bias_variance[kRangeScale - kFirstBias] = square(kSoundShare);
   }
   return out;
 }

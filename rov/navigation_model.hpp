@@ -25,8 +25,9 @@ struct NavigationModel {
 // The sensors that must be added before the vehicle can navigate by them, as the tables of its file
 // are named: "[imu], [compass]", "[dvl] or [usbl]". Empty: it can.
 std::string missing_for_navigation(const SensorSet& sensors);
-// Precondition: nothing is missing.
-NavigationModel navigation_model(const SensorSet& sensors);
+// other_sound: the water's speed of sound may be another than DVL and USBL are set to: in a scene
+// that names its water. Precondition: nothing is missing.
+NavigationModel navigation_model(const SensorSet& sensors, bool other_sound = false);
 
 // The variance of a reading's white noise, discretisation included; and of one metre of depth.
 double depth_variance(const PressureSensor& sensor);

@@ -25,7 +25,9 @@ enum ErrorPlace : std::size_t {
   kPressureScale = 20,  // of the depth: the water is lighter or heavier than the sensor's setting
   kCompassBias = 21,    // rad: A + B sin(heading) + C cos(heading)
   kUsblBias = 24,       // range, m; across the line of sight, level and upwards, rad
-  kErrors = 27,
+  kBeamScale = 27,      // of the DVL's speeds, and of USBL ranges: sound is faster or slower
+  kRangeScale = 28,     // than the instrument is set to
+  kErrors = 29,
 };
 
 // A symmetric matrix of kErrors rows: its upper triangle, row by row.

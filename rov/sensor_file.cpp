@@ -17,6 +17,12 @@ Noise noise_of(const CaseField& field, double unit = 1.0) {
           unit * field["walk"].number(0.0, 0.0, 1e9)};
 }
 
+// By which an instrument converts travel times; as in the sea, in fresh water or in other liquids.
+std::optional<double> sound_of(const CaseField& field) {
+  if (!field["sound_m_s"].present()) return std::nullopt;
+  return field["sound_m_s"].number(1500.0, 100.0, 10000.0);
+}
+
 Quat turn(double degrees_about, const Vec3& axis) {
   return glm::angleAxis(radians(degrees_about), axis);
 }
@@ -46,7 +52,7 @@ Imu read_imu_table(const CaseField& field, double gravity_m_s2) {
 Dvl read_dvl_table(const CaseField& field) {
   constexpr std::string_view kKeys[] = {"position_m", "yaw_deg",     "pitch_deg",      "roll_deg",
                                         "rate_hz",    "lean_deg",    "first_beam_deg", "range_m",
-                                        "noise_m_s",  "noise_share", "range_noise_m"};
+                                        "noise_m_s",  "noise_share", "range_noise_m",  "sound_m_s"};
   field.allow(kKeys);
   Dvl dvl;
   dvl.mount = mount_of(field);
@@ -62,6 +68,7 @@ Dvl read_dvl_table(const CaseField& field) {
   dvl.noise = noise_of(field["noise_m_s"]);
   dvl.noise_share = field["noise_share"].number(0.0, 0.0, 1.0);
   dvl.range_noise = noise_of(field["range_noise_m"]);
+  dvl.sound_m_s = sound_of(field);
   return dvl;
 }
 
@@ -97,8 +104,9 @@ Compass read_compass_table(const CaseField& field) {
 }
 
 Altimeter read_altimeter_table(const CaseField& field) {
-  constexpr std::string_view kKeys[] = {"position_m", "yaw_deg", "pitch_deg", "roll_deg",
-                                        "rate_hz",    "range_m", "noise_m",   "noise_share"};
+  constexpr std::string_view kKeys[] = {"position_m", "yaw_deg",     "pitch_deg",
+                                        "roll_deg",   "rate_hz",     "range_m",
+                                        "noise_m",    "noise_share", "sound_m_s"};
   field.allow(kKeys);
   Altimeter altimeter;
   altimeter.mount = mount_of(field);
@@ -110,6 +118,7 @@ Altimeter read_altimeter_table(const CaseField& field) {
   }
   altimeter.noise = noise_of(field["noise_m"]);
   altimeter.noise_share = field["noise_share"].number(0.0, 0.0, 1.0);
+  altimeter.sound_m_s = sound_of(field);
   return altimeter;
 }
 
@@ -122,7 +131,7 @@ Usbl read_usbl_table(const CaseField& field) {
   usbl.transceiver_ned_m = field["transceiver_ned_m"].vec3(Vec3(0.0));
   usbl.beacon_m = field["beacon_m"].vec3(Vec3(0.0));
   usbl.rate_hz = rate_of(field, usbl.rate_hz);
-  usbl.sound_m_s = field["sound_m_s"].number(usbl.sound_m_s, 100.0, 10000.0);
+  usbl.sound_m_s = sound_of(field).value_or(usbl.sound_m_s);
   usbl.most_m = field["most_m"].number(usbl.most_m, 0.0, 1e5);
   usbl.range_noise = noise_of(field["range_noise_m"]);
   usbl.direction_noise = noise_of(field["direction_noise_deg"], radians(1.0));

@@ -59,7 +59,7 @@ void update_readings(const SensorSet& sensors, const SensorWorld& world, const V
     return read_imu(s, vehicle, state, felt, n, k);
   });
   with(sensors.dvl, kDvl, readings.dvl, [&](const Dvl& s, const NoiseSource& n, std::uint64_t k) {
-    return read_dvl(s, state, world.rays, n, k);
+    return read_dvl(s, world.water, state, world.rays, n, k);
   });
   with(sensors.pressure, kPressure, readings.pressure,
        [&](const PressureSensor& s, const NoiseSource& n, std::uint64_t k) {
@@ -71,11 +71,11 @@ void update_readings(const SensorSet& sensors, const SensorWorld& world, const V
        });
   with(sensors.altimeter, kAltimeter, readings.altimeter,
        [&](const Altimeter& s, const NoiseSource& n, std::uint64_t k) {
-         return read_altimeter(s, state, world.rays, n, k);
+         return read_altimeter(s, world.water, state, world.rays, n, k);
        });
   with(sensors.usbl, kUsbl, readings.usbl,
        [&](const Usbl& s, const NoiseSource& n, std::uint64_t k) {
-         return read_usbl(s, state, n, k);
+         return read_usbl(s, world.water, state, n, k);
        });
 }
 

@@ -40,8 +40,7 @@ void put_imu(CdrWriter& cdr, const rov::ImuReading& reading) {
 }
 
 // Its axes in the message: x forward, z where it looks, as the sensor's own.
-void put_dvl(CdrWriter& cdr, const rov::Dvl& dvl, const rov::DvlReading& reading,
-             double sound_m_s) {
+void put_dvl(CdrWriter& cdr, const rov::Dvl& dvl, const rov::DvlReading& reading) {
   constexpr std::uint8_t kBottom = 1, kPiston = 0;
   const Vec3& v = reading.velocity_m_s;
   cdr.number(kBottom);
@@ -53,7 +52,7 @@ void put_dvl(CdrWriter& cdr, const rov::Dvl& dvl, const rov::DvlReading& reading
   cdr.number(std::atan2(v.y, v.x));
   cdr.number(std::hypot(v.x, v.y));
   cdr.number(static_cast<std::uint8_t>(std::popcount(reading.heard & 0xfu)));
-  cdr.number(static_cast<float>(sound_m_s));
+  cdr.number(static_cast<float>(reading.sound_m_s));
   cdr.number(static_cast<std::uint8_t>(1));
   cdr.number(static_cast<std::uint8_t>(1));
   for (std::size_t i = 0; i < 4; ++i) cdr.vector(rov::dvl_beam(dvl, i));
@@ -186,7 +185,7 @@ bool RosOutputs::output(const Sample& sample, std::int64_t log_ns, std::int64_t 
   }
   if (const auto* dvl = std::get_if<rov::DvlReading>(&sample.payload)) {
     cdr.header(stamp_ns, owner + "/dvl_link");
-    put_dvl(cdr, *sensors.dvl, *dvl, 1500.0);
+    put_dvl(cdr, *sensors.dvl, *dvl);
     send(topic, "marine_acoustic_msgs/msg/Dvl");
     return true;
   }

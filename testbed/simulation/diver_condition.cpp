@@ -81,8 +81,9 @@ diver::ConditionInputs inputs_of(const PhysicsHuman& human, const diver::GasMix*
 // In water as warm as its layers have it at the diver's depth.
 diver::ConditionSettings settings_at(const PhysicsHuman& human, const HumanPhysics& diver) {
   diver::ConditionSettings settings = human.condition->settings;
-  if (human.body.column && !human.condition->own_water)
-    settings.cold.water_c = human.body.column->at(diver.human.root.position_ned_m.z).temperature_c;
+  if (human.body.layers && !human.condition->own_water)
+    settings.cold.water_c =
+        human.body.layers->column().at(diver.human.root.position_ned_m.z).temperature_c;
   return settings;
 }
 

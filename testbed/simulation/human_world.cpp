@@ -101,7 +101,7 @@ Result<PhysicsHuman> physics_human(const scene::Scene& scene, std::size_t index)
   const Pose at = scene.world_from(object.mount, 0.0);
   human.file.parameters.start_depth_m = std::clamp(ned_from_world(at.position_m).z, 0.0, 1e9);
   NERITIC_TRY(human.body, diver::make_body(human.file.parameters));
-  if (scene.water) human.body.column = scene.water->column;
+  if (scene.water && scene.water->column) human.body.layers.emplace(*scene.water->column);
   NERITIC_TRY(diver::DiveComputer computer, diver::DiveComputer::create(human.file.computer));
   human.computer = std::make_unique<const diver::DiveComputer>(std::move(computer));
   if (object.human->swim) {

@@ -468,7 +468,9 @@ void PhysicsWorld::sense(std::size_t index, const rov::Vec6& contact, double fro
 }
 
 rov::SensorWorld PhysicsWorld::sensor_world(std::size_t vehicle) const {
-  return {rays(), seed_, vehicle, vehicles_[vehicle].water};
+  rov::SensorWorld world{rays(), seed_, vehicle, vehicles_[vehicle].water};
+  world.water.layers = layers_ ? &*layers_ : nullptr;
+  return world;
 }
 
 PhysicsSimulation::Step PhysicsWorld::step_function(unsigned threads) const {

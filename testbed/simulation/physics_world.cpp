@@ -94,7 +94,7 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
   for (std::size_t i = 0; i < world->tethers_.all().size(); ++i)
     world->vehicles_[world->tethers_.all()[i].vehicle].tether = i;
   world->water_kg_m3_ = scene.physics->water_kg_m3;
-  if (scene.water) world->column_ = scene.water->column;
+  if (scene.water && scene.water->column) world->layers_.emplace(*scene.water->column);
   NERITIC_TRY(world->modems_, Modems::create(scene, world->movers_));
   for (const PhysicsModem& modem : world->modems_.all())
     if (modem.sort == OwnerSort::kVehicle && modem.ranging &&

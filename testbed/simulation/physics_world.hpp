@@ -226,8 +226,9 @@ class PhysicsWorld {
   Things things_;
   Tethers tethers_;
   double water_kg_m3_ = 1028.0;
-  std::optional<WaterColumn> column_;  // the density of layers, where the scene names them
-  bool washes_ = false;                // a vehicle names its wash
+  std::optional<LayeredWater>
+      layers_;           // density, weight and sound, where the scene names its water
+  bool washes_ = false;  // a vehicle names its wash
 };
 
 // How a vehicle with these sensors navigates, as the scene chooses; none: by its true state. An

@@ -19,12 +19,20 @@ constexpr int kPlacesALeg = 9;
 constexpr double kPlacesApart_m = 10.0;
 constexpr int kMostPlacesALeg = 200;
 
-// Places in the air. A vehicle that floats comes no higher.
-bool in_air(const PhysicsVehicle& vehicle, std::size_t waypoint, const Vec3& place_ned_m,
+// One who goes to a waypoint, and how it lies there.
+struct Visitor {
+  const std::string& name;
+  const sim::BodyShape& shape;
+  double acceptance_m;
+};
+
+// Places in the air. What floats comes no higher.
+bool in_air(const Visitor& visitor, std::size_t waypoint, const Vec3& place_ned_m,
             std::vector<std::string>& lines) {
   if (place_ned_m.z >= 0.0) return false;
-  lines.push_back(fmt::format("{}: waypoint {} lies {:.3g} m above the surface", vehicle.name,
-                              waypoint + 1, -place_ned_m.z));
+  lines.push_back(
+      fmt::format("{}: waypoint {} lies {:.3g} m above the surface; accepted: at it or below it",
+                  visitor.name, waypoint + 1, -place_ned_m.z));
   return true;
 }
 
@@ -54,24 +62,23 @@ std::optional<sim::RayHit> bed_over(const PhysicsWorld& world, const Vec3& place
   return first;
 }
 
-bool in_solid(const PhysicsWorld& world, const PhysicsVehicle& vehicle, std::size_t waypoint,
-              const MissionGuide::LegPoint& place, std::vector<std::string>& lines) {
-  const double allowed_m = vehicle.mission->acceptance_m();
+bool in_solid(const PhysicsWorld& world, const Visitor& visitor, std::size_t waypoint,
+              const Vec3& place_ned_m, double heading_rad, std::vector<std::string>& lines) {
+  const double allowed_m = visitor.acceptance_m;
   const auto add = [&](double depth_m, const char* where, std::uint32_t label) {
     lines.push_back(
         fmt::format("{}: waypoint {} lies {:.3g} m {} {}: it is not reached; move it "
                     "into the water, or give {} collision = false",
-                    vehicle.name, waypoint + 1, depth_m, where, world.solid_name(label),
+                    visitor.name, waypoint + 1, depth_m, where, world.solid_name(label),
                     world.solid_name(label)));
     return true;
   };
-  if (const auto bed = bed_over(world, place.place_ned_m); bed && bed->distance_m > allowed_m)
+  if (const auto bed = bed_over(world, place_ned_m); bed && bed->distance_m > allowed_m)
     return add(bed->distance_m, "below the bed", bed->label);
   sim::ContactMemory memory;
-  const Pose pose =
-      rov::world_pose(place.place_ned_m, rov::heading_attitude(place.heading_rad.value_or(0.0)));
+  const Pose pose = rov::world_pose(place_ned_m, rov::heading_attitude(heading_rad));
   const sim::Contact* worst = nullptr;
-  const auto contacts = world.solid().contacts(vehicle.kind.solid.shape, pose, 0.0, memory);
+  const auto contacts = world.solid().contacts(visitor.shape, pose, 0.0, memory);
   for (const sim::Contact& contact : contacts)
     if (-contact.gap_m > allowed_m && (!worst || contact.gap_m < worst->gap_m)) worst = &contact;
   if (!worst) return false;
@@ -84,7 +91,8 @@ bool hears_bottom(const PhysicsWorld& world, const PhysicsVehicle& vehicle, cons
   rov::State state = vehicle.start;
   state.position_ned_m = place_ned_m;
   state.attitude = rov::heading_attitude(heading_rad);
-  return rov::read_dvl(*vehicle.file.sensors.dvl, state, world.rays(), rov::NoiseSource{}, 0)
+  return rov::read_dvl(*vehicle.file.sensors.dvl, vehicle.water, state, world.rays(),
+                       rov::NoiseSource{}, 0)
       .locked();
 }
 
@@ -95,11 +103,26 @@ void add_places(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
   const std::size_t count = vehicle.mission->waypoint_count();
   if (count == 0) return;
   const auto legs = vehicle.mission->legs(vehicle.start, world.start());
+  const Visitor visitor{vehicle.name, vehicle.kind.solid.shape, vehicle.mission->acceptance_m()};
   bool air = false, solid = false;
   for (std::size_t i = 0; i < count; ++i) {
     const MissionGuide::LegPoint& place = legs[i].points.back();
-    air = air || in_air(vehicle, i, place.place_ned_m, lines);
-    solid = solid || in_solid(world, vehicle, i, place, lines);
+    air = air || in_air(visitor, i, place.place_ned_m, lines);
+    solid = solid ||
+            in_solid(world, visitor, i, place.place_ned_m, place.heading_rad.value_or(0.0), lines);
+  }
+}
+
+void add_places(const PhysicsWorld& world, const PhysicsHuman& human,
+                std::vector<std::string>& lines) {
+  const Visitor visitor{human.name, human.shape, human.acceptance_m};
+  Vec3 from = human.start.human.root.position_ned_m;
+  bool air = false, solid = false;
+  for (std::size_t i = 0; i < human.waypoints_ned_m.size(); ++i) {
+    const Vec3 &to = human.waypoints_ned_m[i], way = to - from;
+    air = air || in_air(visitor, i, to, lines);
+    solid = solid || in_solid(world, visitor, i, to, std::atan2(way.y, way.x), lines);
+    from = to;
   }
 }
 

@@ -1,4 +1,4 @@
-// Faults of the places of a vehicle's mission, told before a dive (mission_outlook.hpp): a
+// Faults of the places of a mission or a diver's plan, told before a dive (mission_outlook.hpp): a
 // line each. Pure functions; any thread.
 #pragma once
 
@@ -13,6 +13,9 @@ namespace neritic::testbed {
 // would be deeper in something solid than its acceptance: by its own shape, level, at the heading
 // that the mission has there.
 void add_places(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
+                std::vector<std::string>& lines);
+// The same of a diver, prone, with the head where the way leads.
+void add_places(const PhysicsWorld& world, const PhysicsHuman& human,
                 std::vector<std::string>& lines);
 
 // A Doppler log that never hears a bottom: fewer than three of its beams meet something solid

@@ -152,9 +152,9 @@ rov::Inputs PhysicsWorld::acting_on(const PhysicsVehicle& vehicle, const Vehicle
   acting.failed_thrusters = failed_thrusters(vehicle, inputs, state);
   apply_surface(vehicle.vehicle, vehicle.kind.top_m, vehicle.kind.bottom_m, state.body,
                 water.head_m, acting);
-  if (column_) {
+  if (layers_) {
     // The vehicle's buoyancy is that in water of the scene's density.
-    const double more = column_->density_kg_m3(state.body.position_ned_m.z) / water_kg_m3_ - 1.0;
+    const double more = layers_->density_kg_m3(state.body.position_ned_m.z) / water_kg_m3_ - 1.0;
     const Vec3 lift_n =
         glm::conjugate(state.body.attitude) * Vec3(0.0, 0.0, -more * vehicle.vehicle.buoyancy_n);
     acting.wrench =
@@ -175,7 +175,10 @@ Result<std::optional<rov::NavigationModel>> choose_navigation(const scene::Scene
         "{}: {}: navigation: found \"measured\"; accepted: \"truth\", or {} added to {}",
         scene.path, object.name, missing, object.dynamics->file.string());
   std::optional<rov::NavigationModel> out;
-  if (wanted != Navigation::kTruth && missing.empty()) out = rov::navigation_model(sensors);
+  if (wanted != Navigation::kTruth && missing.empty()) {
+    const bool named = scene.water && scene.water->column;
+    out = rov::navigation_model(sensors, named);
+  }
   return out;
 }
 

@@ -110,5 +110,38 @@ TEST(RovNavigationConsistency, ReadingsWithoutFaultAreHardlyEverRejected) {
   EXPECT_EQ(c.refused, 0u);
 }
 
+// In water in which sound is slower than the instruments are set to, by 3 %: a set 150 m off fixes
+// the vehicle 5 m farther away, and the DVL's speeds are too large. Without scales of them in its
+// state the navigation took either for true.
+TEST(RovNavigationConsistency, SoundThatIsSlowerThanItIsSetToIsEstimated) {
+  const LayeredWater layers(WaterColumn{.temperature_c = 12.0, .salinity_psu = 0.0});
+  constexpr int kSeconds = 30;
+  constexpr std::uint64_t kRuns = 40;
+  const auto& truth = circling(kSeconds);
+  Mean position;
+  std::uint64_t rejected = 0, tested = 0;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    SensorSet sensors = sensors_of(seed);
+    sensors.usbl->transceiver_ned_m = {-150.0, 20.0, 1.0};
+    sensors.dvl->sound_m_s = 1500.0;
+    SensorWater water = water_of(seed);
+    // The density is the one that the pressure sensor is set to, as before.
+    const double kg_m3 = water.water_kg_m3;
+    water.layers = &layers;
+    sensors.pressure->water_kg_m3 *= layers.density_kg_m3(0.0) / kg_m3;
+    NavigationRun run(sensors, seed, truth[0], water);
+    for (std::size_t k = 1; k < truth.size(); ++k)
+      run.step(truth[k], static_cast<double>(k) * kRunStep_s);
+    position.add(normalized_square(run.state, kPositionError, run.position_error(truth.back())));
+    for (const Aid aid : {Aid::kBeam0, Aid::kBeam1, Aid::kBeam2, Aid::kBeam3, Aid::kUsbl}) {
+      const AidTally& tally = run.state.aids[static_cast<std::size_t>(aid)];
+      rejected += tally.rejected;
+      tested += tally.accepted + tally.rejected;
+    }
+  }
+  EXPECT_LT(position.value(), chi_square(3.0 * kRuns, k999) / kRuns);
+  EXPECT_LT(static_cast<double>(rejected), 5e-3 * static_cast<double>(tested));
+}
+
 }  // namespace
 }  // namespace neritic::rov

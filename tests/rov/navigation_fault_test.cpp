@@ -174,6 +174,7 @@ TEST(RovNavigationFault, ReadingsThatAreNoNumbersAreRefusedAndCounted) {
 // Any bytes in any reading, at any times, for a thousand updates each.
 TEST(RovNavigationFault, NoReadingsTakeTheStateOrItsCovarianceApart) {
   for (std::uint64_t n = 0; n < 40; ++n) {
+    SCOPED_TRACE(n);
     Draws draws(400 + n);
     const auto any = [&] {
       const double kinds[] = {kNone,

@@ -94,7 +94,10 @@ class NavigationRun {
  public:
   NavigationRun(const SensorSet& sensors, std::uint64_t seed, const State& start,
                 const SensorWater& in = {})
-      : water(in), sensors_(sensors), seed_(seed), model_(navigation_model(sensors)) {
+      : water(in),
+        sensors_(sensors),
+        seed_(seed),
+        model_(navigation_model(sensors, in.layers != nullptr)) {
     read(start, -1.0, 0.0);
     state = start_navigation(model_, readings, surveyed_launch(start.position_ned_m, seed, 0), 0.0);
   }

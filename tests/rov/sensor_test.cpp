@@ -120,7 +120,7 @@ TEST(RovSensor, DvlMeasuresVelocityAndAltitudeOverABottom) {
   state.position_ned_m = {1.0, 2.0, 20.0};
   state.attitude = heading_attitude(0.8) * glm::angleAxis(0.1, Vec3(1, 0, 0));
   state.velocity = {{0.5, -0.2, 0.1, 0.1, 0.2, -0.3}};
-  const DvlReading read = read_dvl(dvl, state, bottom.query(), {}, 0);
+  const DvlReading read = read_dvl(dvl, {}, state, bottom.query(), {}, 0);
   ASSERT_TRUE(read.locked());
   EXPECT_EQ(read.heard, 15u);
   const Vec3 there =
@@ -128,8 +128,8 @@ TEST(RovSensor, DvlMeasuresVelocityAndAltitudeOverABottom) {
   EXPECT_LT(glm::length(dvl.mount.rotation * read.velocity_m_s - there), 1e-12);
   EXPECT_NEAR(read.altitude_m,
               30.0 - (state.position_ned_m + state.attitude * dvl.mount.position_m).z, 1e-9);
-  EXPECT_FALSE(read_dvl(dvl, state, Bottom{500.0}.query(), {}, 0).locked());
-  EXPECT_FALSE(read_dvl(dvl, state, {}, {}, 0).locked());
+  EXPECT_FALSE(read_dvl(dvl, {}, state, Bottom{500.0}.query(), {}, 0).locked());
+  EXPECT_FALSE(read_dvl(dvl, {}, state, {}, {}, 0).locked());
 }
 
 TEST(RovSensor, DvlHoldsOnThreeBeamsAndLosesLockOnTwo) {
@@ -141,7 +141,7 @@ TEST(RovSensor, DvlHoldsOnThreeBeamsAndLosesLockOnTwo) {
   std::array<int, 5> seen{};
   for (double lean = 0.0; lean < 1.5; lean += 0.01) {
     state.attitude = glm::angleAxis(lean, glm::normalize(Vec3(1.0, 0.6, 0.0)));
-    const DvlReading read = read_dvl({}, state, bottom.query(), {}, 0);
+    const DvlReading read = read_dvl({}, {}, state, bottom.query(), {}, 0);
     const auto beams = static_cast<std::size_t>(std::popcount(read.heard));
     ++seen[beams];
     EXPECT_EQ(read.locked(), beams >= 3);
@@ -161,12 +161,12 @@ TEST(RovSensor, AltimeterLooksAlongItsAxis) {
   State state;
   state.position_ned_m.z = 20.0;
   state.attitude = glm::angleAxis(kPi / 3.0, Vec3(1, 0, 0));
-  const AltimeterReading read = read_altimeter({}, state, bottom.query(), {}, 0);
+  const AltimeterReading read = read_altimeter({}, {}, state, bottom.query(), {}, 0);
   EXPECT_EQ(read.heard, 1u);
   EXPECT_NEAR(read.distance_m, 20.0, 1e-9);
   Altimeter near;
   near.most_m = 15.0;
-  EXPECT_EQ(read_altimeter(near, state, bottom.query(), {}, 0).heard, 0u);
+  EXPECT_EQ(read_altimeter(near, {}, state, bottom.query(), {}, 0).heard, 0u);
 }
 
 TEST(RovSensor, UsblFindsTheBeacon) {
@@ -175,16 +175,89 @@ TEST(RovSensor, UsblFindsTheBeacon) {
   usbl.beacon_m = {0.0, 0.0, -0.2};
   State state;
   state.position_ned_m = {-20.0, 40.0, 25.0};
-  const UsblReading read = read_usbl(usbl, state, {}, 0);
+  const UsblReading read = read_usbl(usbl, {}, state, {}, 0);
   EXPECT_EQ(read.heard, 1u);
   EXPECT_LT(glm::distance(read.position_ned_m, state.position_ned_m + usbl.beacon_m), 1e-9);
   EXPECT_NEAR(read.travel_s, 2.0 * read.range_m / 1500.0, 1e-12);
   usbl.lost_share = 0.3;
   int lost = 0;
-  for (std::uint64_t k = 0; k < 10000; ++k) lost += read_usbl(usbl, state, {7, 1}, k).heard == 0;
+  for (std::uint64_t k = 0; k < 10000; ++k)
+    lost += read_usbl(usbl, {}, state, {7, 1}, k).heard == 0;
   EXPECT_NEAR(lost, 3000, 150);
   usbl.most_m = 10.0;
-  EXPECT_EQ(read_usbl(usbl, state, {}, 0).heard, 0u);
+  EXPECT_EQ(read_usbl(usbl, {}, state, {}, 0).heard, 0u);
+}
+
+// Fresh and warm over salty and cold.
+WaterColumn halocline() {
+  WaterColumn column{.temperature_c = 24.0, .salinity_psu = 2.0};
+  column.layer[column.count++] = {
+      .depth_m = 8.0, .thickness_m = 0.3, .temperature_c = 8.0, .salinity_psu = 35.0};
+  return column;
+}
+
+// Whose weight is that of both layers: by the density of the lower one alone it is 2.2 kPa more.
+TEST(RovSensor, PressureInLayersIsTheWeightOfAllAbove) {
+  const LayeredWater layers(halocline());
+  SensorWater water{1025.0, 9.82, 101325.0};
+  water.layers = &layers;
+  State state;
+  state.position_ned_m.z = 30.0;
+  const double upper = sea_density_kg_m3({24.0, 2.0}), lower = sea_density_kg_m3({8.0, 35.0});
+  // The transition's middle lies at 8 m, and it is even.
+  const double layers_pa = 9.82 * (8.0 * upper + 22.0 * lower);
+  const PressureReading read = read_pressure({}, water, state, {}, 0);
+  EXPECT_NEAR(read.pressure_pa, 101325.0 + layers_pa, 0.002 * 9.82 * 30.0);
+  EXPECT_GT(101325.0 + 9.82 * lower * 30.0 - read.pressure_pa, 2000.0);
+  // The conversion stays the sensor's.
+  EXPECT_NEAR(read.depth_m, (read.pressure_pa - 101325.0) / (1025.0 * 9.82), 1e-9);
+}
+
+// By travel time through the water there is, and the speed of sound that it is set to.
+TEST(RovSensor, UsblRangesAreThoseOfItsOwnSpeedOfSound) {
+  const LayeredWater layers(WaterColumn{.temperature_c = 4.0, .salinity_psu = 0.0});
+  SensorWater lake;
+  lake.layers = &layers;
+  Usbl usbl;
+  State state;
+  state.position_ned_m = {60.0, 0.0, 80.0};
+  const double sound_m_s = 1.0 / layers.mean_slowness_s_m(0.0, 80.0);
+  EXPECT_NEAR(sound_m_s, 1422.0, 1.0);
+  const UsblReading read = read_usbl(usbl, lake, state, {}, 0);
+  EXPECT_NEAR(read.travel_s, 200.0 / sound_m_s, 1e-9);
+  EXPECT_NEAR(read.range_m, 100.0 * 1500.0 / sound_m_s, 1e-9);
+  EXPECT_NEAR(read.position_ned_m.z, 80.0 * 1500.0 / sound_m_s, 1e-9);
+  usbl.sound_m_s = sound_m_s;
+  EXPECT_NEAR(read_usbl(usbl, lake, state, {}, 0).range_m, 100.0, 1e-9);
+}
+
+TEST(RovSensor, DvlAndAltimeterErrByTheSoundThatTheyAreSetTo) {
+  const LayeredWater layers(halocline());
+  SensorWater water;
+  water.layers = &layers;
+  const Bottom bottom{30.0};
+  State state;
+  state.position_ned_m.z = 20.0;
+  state.velocity = {{0.5, -0.2, 0.1, 0, 0, 0}};
+  Dvl dvl;
+  // It measures the sound around it.
+  const DvlReading exact = read_dvl(dvl, water, state, bottom.query(), {}, 0);
+  EXPECT_LT(glm::length(exact.velocity_m_s - state.velocity.linear()), 1e-12);
+  EXPECT_NEAR(exact.sound_m_s, layers.column().sound_speed_m_s(20.0), 1e-9);
+  EXPECT_NEAR(exact.altitude_m, 10.0, 1e-9);
+  dvl.sound_m_s = 1500.0;
+  const DvlReading set = read_dvl(dvl, water, state, bottom.query(), {}, 0);
+  const double scale = 1500.0 / layers.column().sound_speed_m_s(20.0);
+  EXPECT_GT(scale, 1.01);
+  EXPECT_LT(glm::length(set.velocity_m_s - scale * state.velocity.linear()), 1e-9);
+  EXPECT_EQ(set.sound_m_s, 1500.0);
+  EXPECT_NEAR(set.altitude_m, 10.0 * 1500.0 * layers.mean_slowness_s_m(20.0, 30.0), 1e-9);
+  // The water of a scene that does not name it is as it is set.
+  EXPECT_NEAR(read_dvl(dvl, {}, state, bottom.query(), {}, 0).altitude_m, 10.0, 1e-9);
+  Altimeter altimeter;
+  altimeter.sound_m_s = 1500.0;
+  EXPECT_NEAR(read_altimeter(altimeter, water, state, bottom.query(), {}, 0).distance_m,
+              10.0 * 1500.0 * layers.mean_slowness_s_m(20.0, 30.0), 1e-9);
 }
 
 TEST(RovSensorNoise, IsOffByDefaultAndOtherwiseAsSaid) {
