@@ -44,7 +44,8 @@ DiveRecorder::DiveRecorder(const PhysicsWorld& world, const RecordOptions& optio
       figures_(world.vehicles().size()),
       last_(world.start()),
       stepped_before_s_(stepped_s),
-      humans_(world) {}
+      humans_(world),
+      progress_(world) {}
 
 bool DiveRecorder::row_due(std::size_t vehicle, std::uint64_t step) const {
   if (options_.row_rate_hz == 0.0) return world_.control_due(vehicle, step);
@@ -124,6 +125,7 @@ void DiveRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
     if (options_.rows && row_due(i, snapshot.step)) rows_.vehicles.push_back(row_of(i, snapshot));
   }
   humans_.add(snapshot);
+  progress_.add(snapshot);
   if (options_.rows && human_row_due(snapshot.step))
     for (std::size_t i = 0; i < humans_.figures().size(); ++i)
       rows_.humans.push_back(human_row(world_, i, snapshot));

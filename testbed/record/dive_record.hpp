@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "testbed/record/human_record.hpp"
+#include "testbed/simulation/mission_progress.hpp"
 #include "testbed/simulation/physics_world.hpp"
 
 namespace neritic::testbed {
@@ -69,6 +70,7 @@ class DiveRecorder {
   double from_s() const { return from_s_; }
   double stepped_s() const { return stepped_before_s_ + newest_s_ - from_s_; }
   const HumanRecorder& humans() const { return humans_; }
+  const MissionProgress& progress() const { return progress_; }
 
  private:
   bool row_due(std::size_t vehicle, std::uint64_t step) const;
@@ -85,6 +87,7 @@ class DiveRecorder {
   bool begun_ = false;
   double from_s_ = 0.0, newest_s_ = 0.0, stepped_before_s_ = 0.0;
   HumanRecorder humans_;
+  MissionProgress progress_;
 };
 
 }  // namespace neritic::testbed

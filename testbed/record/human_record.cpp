@@ -10,7 +10,8 @@ namespace neritic::testbed {
 HumanRecorder::HumanRecorder(const PhysicsWorld& world)
     : world_(world),
       figures_(world.humans().size()),
-      last_ned_m_(world.humans().size(), Vec3(0.0)) {
+      last_ned_m_(world.humans().size(), Vec3(0.0)),
+      last_arrived_(world.humans().size()) {
   for (const PhysicsHuman& human : world.humans())
     last_tank_.push_back(human.start.human.held.tank);
 }
@@ -116,6 +117,13 @@ void HumanRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
     const diver::RootState& root = state.human.root;
     HumanFigures& figures = figures_[i];
     if (begun_) figures.path_m += glm::distance(root.position_ned_m, last_ned_m_[i]);
+    if (begun_ && state.arrived > last_arrived_[i]) {
+      const std::vector<Vec3>& places = world_.humans()[i].waypoints_ned_m;
+      figures.arrivals_s.push_back(snapshot.time_s);
+      figures.misses_m.push_back(
+          glm::distance(root.position_ned_m, places[(state.arrived - 1) % places.size()]));
+    }
+    last_arrived_[i] = state.arrived;
     last_ned_m_[i] = root.position_ned_m;
     figures.largest_speed_m_s =
         std::max(figures.largest_speed_m_s, glm::length(root.velocity.linear()));

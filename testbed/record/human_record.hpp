@@ -40,6 +40,7 @@ struct TankChange {
 
 struct HumanFigures {
   double path_m = 0.0, largest_speed_m_s = 0.0, deepest_m = 0.0, shallowest_m = 1e9;
+  std::vector<double> arrivals_s, misses_m;  // at its plan's waypoints, and how far off it is then
   // Dangers over the dive, noted once a second. How long the diver got no gas, in all and at a
   // stretch, since when and from which tank at first; 0: never.
   double out_of_gas_s = 0.0, out_of_gas_longest_s = 0.0, out_of_gas_from_s = 0.0;
@@ -74,6 +75,7 @@ class HumanRecorder {
   const PhysicsWorld& world_;
   std::vector<HumanFigures> figures_;
   std::vector<Vec3> last_ned_m_;
+  std::vector<std::uint64_t> last_arrived_;
   std::vector<std::uint64_t> last_tank_;
   bool begun_ = false;
   double next_sample_s_ = 0.0;  // of the divers' computers

@@ -111,6 +111,33 @@ bool MissionGuide::done(const MissionState& mission) const {
   return !repeat_ && mission.arrived >= waypoints_.size();
 }
 
+double MissionGuide::off_m(const PhysicsState& all, const rov::State& body, double time_s,
+                           const MissionState& mission) const {
+  if (kind_ == scene::Mission::Kind::kWaypoints)
+    return glm::distance(body.position_ned_m, waypoints_[waypoint_index(mission)].position_ned_m);
+  if (kind_ != scene::Mission::Kind::kOrbit)
+    return glm::distance(body.position_ned_m, mission.wanted_ned_m);
+  const Vec3 out = body.position_ned_m - rov::ned_from_world(target_.at(all, time_s).position_m);
+  return std::hypot(std::hypot(out.x, out.y) - radius_m_, out.z);
+}
+
+const char* MissionGuide::place_words() const {
+  using Kind = scene::Mission::Kind;
+  switch (kind_) {
+    case Kind::kWaypoints:
+      return "its waypoint";
+    case Kind::kStation:
+      return "its station";
+    case Kind::kOrbit:
+      return "the circle of its orbit";
+    case Kind::kFollow:
+      return "its place beside whom it follows";
+    case Kind::kStandBetween:
+      return "its place between both";
+  }
+  return "its place";
+}
+
 rov::Setpoint MissionGuide::to_waypoint(const rov::State& body, double time_s,
                                         MissionState& mission) const {
   const bool last = !repeat_ && mission.left + 1 >= waypoints_.size();

@@ -42,6 +42,14 @@ class MissionGuide {
   std::vector<double> holds_s() const;  // of each waypoint
   // All waypoints reached, of a mission that does not repeat.
   bool done(const MissionState& mission) const;
+  // At a waypoint: it stays there for its hold, or since it was the last.
+  bool holds(const MissionState& mission) const { return mission.arrived > mission.left; }
+  // How far the body truly is from where the mission has it: the waypoint ahead, the nearest place
+  // of an orbit's circle, else the place that is wanted of it.
+  double off_m(const PhysicsState& all, const rov::State& body, double time_s,
+               const MissionState& mission) const;
+  // What it is off, as the end of a sentence: "its station".
+  const char* place_words() const;
 
  private:
   struct Face {

@@ -6,21 +6,15 @@
 #include <cmath>
 #include <span>
 
-#include "diver/swimmer_constants.hpp"
 #include "rov/frames.hpp"
 #include "testbed/simulation/place_outlook.hpp"
+#include "testbed/simulation/swim_outlook.hpp"
 
 namespace neritic::testbed {
 namespace {
 
-// The speed of missions that name none: half of what the shipped vehicles reach.
-constexpr double kUsualSpeed_m_s = 0.5;
-// To speed up, settle and turn.
-constexpr double kSlack_s = 10.0;
 // Slower ones count as that, so that no way is without end.
 constexpr double kLeastSpeed_m_s = 0.01;
-// A diver's legs sustain no more (assets/scenes/README.md).
-constexpr double kSustained_m_s = 0.8;
 // A vehicle that is slower along its way makes none.
 constexpr double kLeastWay_m_s = 0.05;
 // Headings at which a vehicle may face a current.
@@ -220,74 +214,6 @@ void add_slow(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
   if (!line.empty()) lines.push_back(std::move(line));
 }
 
-// The speed over ground of a diver who swims at that speed through the water, aslant into the
-// current; 0: makes no way.
-double made_good_m_s(double through_water_m_s, const Vec3& way_ned, const Vec3& current_ned_m_s) {
-  const Vec3 way = rov::along(Vec3(way_ned.x, way_ned.y, 0.0));
-  if (way == Vec3(0.0)) return through_water_m_s;
-  const Vec3 drift(current_ned_m_s.x, current_ned_m_s.y, 0.0);
-  const double with = glm::dot(drift, way), aside = glm::length(drift - with * way);
-  if (aside >= through_water_m_s) return 0.0;
-  return std::max(0.0, with + std::sqrt((through_water_m_s - aside) * (through_water_m_s + aside)));
-}
-
-// The way of a swim plan that is the steepest beyond what the rates of ascent and descent allow.
-void add_steep_way(const PhysicsHuman& human, std::vector<std::string>& lines) {
-  constexpr double kSteep = 1.25;
-  double most = kSteep;
-  std::string line;
-  Vec3 from = human.start.human.root.position_ned_m;
-  for (std::size_t i = 0; i < human.waypoints_ned_m.size(); ++i) {
-    const Vec3& to = human.waypoints_ned_m[i];
-    const double level_m = std::hypot(to.x - from.x, to.y - from.y), down_m = to.z - from.z;
-    const double rate_m_s =
-        down_m > 0.0 ? diver::swimming::kMostSink_m_s : diver::swimming::kMostRise_m_s;
-    const double level_s = level_m / std::max(human.speed_m_s, kLeastSpeed_m_s);
-    const double change_s = std::abs(down_m) / rate_m_s;
-    from = to;
-    if (std::abs(down_m) < diver::swimming::kWellOff_m || change_s <= most * level_s) continue;
-    most = change_s / std::max(level_s, 1e-9);
-    line = fmt::format(
-        "{}: waypoint {} lies {:.3g} m {} and {:.3g} m on: at {:.2g} m a minute that takes {:.0f} "
-        "s, so that the diver circles there",
-        human.name, i + 1, std::abs(down_m), down_m > 0.0 ? "deeper" : "higher", level_m,
-        60.0 * rate_m_s, change_s);
-  }
-  if (!line.empty()) lines.push_back(std::move(line));
-}
-
-// The way of a swim plan on which the diver makes no way, or would have to swim too fast.
-void add_swim(const PhysicsWorld& world, const PhysicsHuman& human,
-              std::vector<std::string>& lines) {
-  if (human.waypoints_ned_m.empty()) return;
-  const bool ground = human.speed_over == scene::SpeedOver::kGround;
-  double most_m_s = kSustained_m_s;
-  std::string line;
-  Vec3 from = human.start.human.root.position_ned_m;
-  for (std::size_t i = 0; i < human.waypoints_ned_m.size(); ++i) {
-    const Vec3 &to = human.waypoints_ned_m[i], way = to - from;
-    for (const Vec3& place : {from, to}) {
-      const Vec3 current = world.current_ned_m_s(place, 0.0);
-      const double needed_m_s = through_water_m_s(human.speed_m_s, way, current);
-      if (ground && current != Vec3(0.0) && needed_m_s > most_m_s) {
-        most_m_s = needed_m_s;
-        line = fmt::format(
-            "{}: {:.3g} m/s over ground to waypoint {} is {:.3g} m/s through the "
-            "water; legs sustain some {:.2g} m/s",
-            human.name, human.speed_m_s, i + 1, needed_m_s, kSustained_m_s);
-      }
-      if (!ground && line.empty() && made_good_m_s(human.speed_m_s, way, current) <= 0.0)
-        line = fmt::format(
-            "{}: {:.3g} m/s through the water makes no way to waypoint {} in a "
-            "current of {:.3g} m/s",
-            human.name, human.speed_m_s, i + 1, glm::length(current));
-    }
-    from = to;
-  }
-  if (!line.empty()) lines.push_back(std::move(line));
-  add_steep_way(human, lines);
-}
-
 // A way with its stops, and the number of waypoints that were reached.
 struct Way {
   std::string name;
@@ -360,15 +286,28 @@ void add_battery(const PhysicsVehicle& vehicle, const Way& way, std::vector<std:
                   vehicle.name, stored_wh, needed_s, battery.hotel_w));
 }
 
-void add_unfinished(const Way& way, double seconds, std::vector<std::string>& lines) {
+// stalled_s: how long it has come no nearer to the next waypoint.
+void add_unfinished(const Way& way, double seconds, std::optional<double> stalled_s,
+                    std::vector<std::string>& lines) {
   if (way.arrived >= way.waypoints_m.size()) return;
   const double nominal_s = time_to_s(way, way.waypoints_m.size() - 1);
   const double next_s = time_to_s(way, way.arrived);
-  if (seconds < nominal_s + kSlack_s && seconds < 2.0 * next_s + kSlack_s) return;
-  lines.push_back(fmt::format("{}: {} of {} waypoints left after {:.4g} s, {:.3g} m to the next",
-                              way.name, way.waypoints_m.size() - way.arrived,
-                              way.waypoints_m.size(), seconds,
-                              glm::distance(way.at_m, way.waypoints_m[way.arrived])));
+  const bool enough = seconds >= nominal_s + kSlack_s || seconds >= 2.0 * next_s + kSlack_s;
+  if (!enough && !stalled_s) return;
+  lines.push_back(fmt::format(
+      "{}: {} of {} waypoints left after {:.4g} s, {:.3g} m to the next{}", way.name,
+      way.waypoints_m.size() - way.arrived, way.waypoints_m.size(), seconds,
+      glm::distance(way.at_m, way.waypoints_m[way.arrived]),
+      stalled_s ? fmt::format(", no nearer to it for {:.0f} s", *stalled_s) : std::string()));
+}
+
+// Of a mission that repeats, and so has no end.
+void add_stalled(const std::string& name, const Vec3& at_m, const Vec3& waypoint_m,
+                 std::size_t number, std::optional<double> stalled_s,
+                 std::vector<std::string>& lines) {
+  if (!stalled_s) return;
+  lines.push_back(fmt::format("{}: {:.3g} m to waypoint {}, no nearer to it for {:.0f} s", name,
+                              glm::distance(at_m, waypoint_m), number, *stalled_s));
 }
 
 }  // namespace
@@ -388,32 +327,53 @@ std::vector<std::string> cannot_hold(const PhysicsWorld& world) {
     const auto legs = vehicle.mission->legs(vehicle.start, start);
     if (!add_no_way(world, vehicle, legs, lines)) add_slow(world, vehicle, legs, lines);
   }
-  for (const PhysicsHuman& human : world.humans()) add_swim(world, human, lines);
+  for (const PhysicsHuman& human : world.humans()) {
+    add_places(world, human, lines);
+    add_swim(world, human, lines);
+  }
   return lines;
 }
 
 std::vector<std::string> unfinished(const PhysicsWorld& world, const PhysicsState& state,
-                                    double seconds) {
+                                    double seconds, const MissionProgress* progress) {
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < world.vehicles().size(); ++i) {
     const PhysicsVehicle& vehicle = world.vehicles()[i];
-    if (!vehicle.mission || vehicle.mission->repeats()) continue;
     const VehicleState& now = state.vehicles()[i];
-    if (now.mission.piloted != 0) continue;  // somebody else flies it
-    Way way = way_of(world, vehicle);
-    way.at_m = now.body.position_ned_m;
-    way.arrived = now.mission.arrived;
-    add_unfinished(way, seconds, lines);
+    if (!vehicle.mission || now.mission.piloted != 0) continue;  // or somebody else flies it
+    const MissionGuide& mission = *vehicle.mission;
+    const auto stalled_s = progress ? progress->stalled_vehicle_s(i) : std::nullopt;
+    if (mission.waypoint_count() == 0) {
+      if (const auto off_m = progress ? progress->off_place_m(i) : std::nullopt)
+        lines.push_back(fmt::format("{}: {:.3g} m off {} at the end; accepted: up to {:g} m",
+                                    vehicle.name, *off_m, mission.place_words(),
+                                    MissionProgress::kAtPlace_m));
+    } else if (mission.repeats()) {
+      const std::size_t index = mission.waypoint_index(now.mission);
+      add_stalled(vehicle.name, now.body.position_ned_m, mission.waypoints_ned_m()[index],
+                  index + 1, stalled_s, lines);
+    } else {
+      Way way = way_of(world, vehicle);
+      way.at_m = now.body.position_ned_m;
+      way.arrived = now.mission.arrived;
+      add_unfinished(way, seconds, stalled_s, lines);
+    }
   }
   for (std::size_t i = 0; i < world.humans().size(); ++i) {
     const PhysicsHuman& human = world.humans()[i];
-    if (human.repeat) continue;
+    if (human.waypoints_ned_m.empty()) continue;
     const HumanPhysics& now = state.humans()[i];
-    add_unfinished(
-        {human.name, human.start.human.root.position_ned_m, now.human.root.position_ned_m,
-         human.waypoints_ned_m, std::vector<double>(human.waypoints_ned_m.size()),
-         speeds_of(world, human), now.arrived},
-        seconds, lines);
+    const Vec3& at_m = now.human.root.position_ned_m;
+    const auto stalled_s = progress ? progress->stalled_human_s(i) : std::nullopt;
+    if (human.repeat) {
+      const std::size_t index = now.arrived % human.waypoints_ned_m.size();
+      add_stalled(human.name, at_m, human.waypoints_ned_m[index], index + 1, stalled_s, lines);
+    } else {
+      add_unfinished(
+          {human.name, human.start.human.root.position_ned_m, at_m, human.waypoints_ned_m,
+           std::vector<double>(human.waypoints_ned_m.size()), speeds_of(world, human), now.arrived},
+          seconds, stalled_s, lines);
+    }
   }
   return lines;
 }

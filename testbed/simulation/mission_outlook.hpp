@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "testbed/simulation/mission_progress.hpp"
 #include "testbed/simulation/physics_world.hpp"
 
 namespace neritic::testbed {
@@ -24,8 +25,10 @@ std::vector<std::string> cannot_hold(const PhysicsWorld& world);
 // A line each for the missions of vehicles and swim plans of divers that are not finished after
 // so many seconds from their start, though that was enough: longer than the way takes at its speed
 // (vehicles without one: 0.5 m/s) with its stops and 10 s more; or waypoints are missing that twice
-// that time was enough for. Those that repeat have no end; a vehicle that a pilot flies has none.
+// that time was enough for. With the run's progress also for those who make no way to a waypoint,
+// with an end or without, and for vehicles off their station, orbit or followed participant at the
+// end (mission_progress.hpp). A vehicle that a pilot flies has no mission.
 std::vector<std::string> unfinished(const PhysicsWorld& world, const PhysicsState& state,
-                                    double seconds);
+                                    double seconds, const MissionProgress* progress = nullptr);
 
 }  // namespace neritic::testbed

@@ -123,5 +123,83 @@ TEST_F(DivePhysics, AMissionThatCannotSucceedIsToldBeforeAndEndsWithStatusOne) {
   EXPECT_EQ(well.err.find("thrusters"), std::string::npos) << well.err;
 }
 
+// With status 1 and one line, whether or not the time would have sufficed: one that is stuck at a
+// wall half way, one off its station in a current, a diver in a current that is faster than he.
+TEST_F(DivePhysics, AMissionThatMakesNoWayOrEndsOffItsPlaceEndsWithStatusOne) {
+  const std::string assets = (test::source_dir() / "assets").string();
+  const auto write = [&](const std::string& text) {
+    ASSERT_TRUE(write_text(scratch_ / "stuck.toml", "[physics]\n" + text).ok());
+  };
+  const std::string rov =
+      "[[vehicles]]\nname = \"rov\"\nshape = \"box\"\nsize_m = [0.57, 0.26, "
+      "0.46]\ndynamics = \"" +
+      assets + "/vehicles/bluerov2_heavy_dynamics.toml\"\nposition_m = [0, -6, 0]\n";
+  const std::string diver = "[[objects]]\nname = \"diver\"\nclass = \"diver\"\nmodel = \"" +
+                            assets + "/models/diver.glb\"\nhuman = \"" + assets +
+                            "/divers/recreational.toml\"\nposition_m = [0, -6, 5]\npitch_deg = "
+                            "-90\nswim = { waypoints_m = [[0, -6, -40]] }\n";
+  struct Case {
+    std::string text, told;
+  };
+  const Case cases[] = {
+      {rov +
+           "mission = { speed_m_s = 0.3, waypoints = [ { position_m = [0, -6, -60] } ] }\n"
+           "[[objects]]\nname = \"wall\"\nclass = \"rock\"\nshape = \"box\"\nsize_m = [30, 30, 1]\n"
+           "position_m = [0, -6, -4]\n",
+       "not finished: rov: 1 of 1 waypoints left after 40 s, 5"},
+      {rov + "mission = { hold = \"station\" }\n[current]\nkind = \"uniform\"\nvelocity_m_s = "
+             "[2.5, 0, 0]\n",
+       " m off its station at the end; accepted: up to 2 m"},
+      {diver + "[current]\nkind = \"uniform\"\nvelocity_m_s = [0, 0, 0.8]\n",
+       "not finished: diver: 1 of 1 waypoints left after 40 s, "}};
+  for (const Case& one : cases) {
+    write(one.text);
+    const Outcome outcome = dive("--headless --seconds 40", "stuck.toml");
+    EXPECT_EQ(outcome.status, 1) << one.told;
+    EXPECT_NE(outcome.err.find(one.told), std::string::npos) << outcome.err;
+    EXPECT_EQ(dive("--headless --seconds 40 --save " + file("on.state"), "stuck.toml").status, 0);
+  }
+  // Without what holds them up they end well, though they are not there yet.
+  write(rov + "mission = { speed_m_s = 0.3, waypoints = [ { position_m = [0, -6, -60] } ] }\n");
+  EXPECT_EQ(dive("--headless --seconds 40", "stuck.toml").status, 0);
+  write(rov + "mission = { hold = \"station\" }\n");
+  EXPECT_EQ(dive("--headless --seconds 40", "stuck.toml").status, 0);
+  write(diver);
+  EXPECT_EQ(dive("--headless --seconds 40", "stuck.toml").status, 0);
+}
+
+// Divers who swim by plan have their rows in the table of seeds, alone and beside vehicles.
+TEST_F(DivePhysics, RunsOfDiversEndInTheTableToo) {
+  const std::string assets = (test::source_dir() / "assets").string();
+  const std::string diver = "[[objects]]\nname = \"diver\"\nclass = \"diver\"\nmodel = \"" +
+                            assets + "/models/diver.glb\"\nhuman = \"" + assets +
+                            "/divers/recreational.toml\"\nposition_m = [4, -6, 5]\npitch_deg = "
+                            "-90\nswim = { waypoints_m = [[4, -6, 0], [4, -6, -4]] }\n";
+  ASSERT_TRUE(write_text(scratch_ / "alone.toml", "[physics]\n" + diver).ok());
+  const Outcome alone = dive("--headless --seconds 60 --seed 5 --runs 2", "alone.toml");
+  EXPECT_EQ(alone.status, 0) << alone.err;
+  for (const char* row : {"\n         5  diver          2 of 2       2", "\n         6  diver"})
+    EXPECT_NE(alone.out.find(row), std::string::npos) << alone.out;
+  EXPECT_NE(alone.out.find("2 of 2 missions done, 0 touched something\n"), std::string::npos)
+      << alone.out;
+  ASSERT_TRUE(write_text(scratch_ / "both.toml", "include = \"dive.toml\"\n" + diver).ok());
+  const Outcome both = dive("--headless --seconds 60 --seed 5 --runs 2 --json", "both.toml");
+  EXPECT_EQ(both.status, 0) << both.err;
+  const auto runs = parse_json(both.out);
+  ASSERT_TRUE(runs.ok()) << both.out;
+  ASSERT_EQ(runs->size(), 4u);
+  EXPECT_EQ((*runs)[0]["vehicle"], "rov");
+  EXPECT_EQ((*runs)[1]["diver"], "diver");
+  EXPECT_EQ((*runs)[1]["arrived"], 2);
+  EXPECT_EQ((*runs)[1]["true_misses_m"].size(), 2u);
+  EXPECT_GT((*runs)[1]["last_arrival_s"], 15.0);
+  // Too short for the way.
+  const Outcome short_of = dive("--headless --seconds 5 --runs 2", "alone.toml");
+  EXPECT_EQ(short_of.status, 1);
+  EXPECT_NE(short_of.err.find("2 of 2 missions not done in 5 s"), std::string::npos)
+      << short_of.err;
+  EXPECT_EQ(dive("--headless --runs 2", "still.toml").status, 2);
+}
+
 }  // namespace
 }  // namespace neritic

@@ -397,7 +397,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
   NERITIC_TRY_STATUS(check_validation(*screen.device));
   const bool whole = physics && !replay && flags.seconds &&
                      physics->newest().time_s >= start_s + *flags.seconds - 1e-6;
-  return whole ? check_finished(flags, *physics) : Status();
+  return whole ? check_finished(flags, *physics, files->recorder()) : Status();
 }
 
 // With every flag but the form of the recording as it is.

@@ -119,13 +119,14 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,
     return failure(ErrorCode::kInterrupted, "interrupted after {:.4g} s of {:g}{}",
                    physics->newest().time_s, seconds,
                    replay ? "" : "; everything up to then is written");
-  return replay ? Status() : check_finished(flags, *physics);
+  return replay ? Status() : check_finished(flags, *physics, files.recorder());
 }
 
-Status check_finished(const DiveFlags& flags, const LivePhysics& physics) {
+Status check_finished(const DiveFlags& flags, const LivePhysics& physics,
+                      const DiveRecorder& recorder) {
   if (!flags.files.save.empty()) return {};  // it goes on later
   const auto& newest = physics.newest();
-  const auto lines = unfinished(physics.world(), newest.state, newest.time_s);
+  const auto lines = unfinished(physics.world(), newest.state, newest.time_s, &recorder.progress());
   if (lines.empty()) return {};
   return failure(ErrorCode::kUnsupported, "{}: not finished: {}", flags.scene,
                  fmt::join(lines, "; "));

@@ -4,6 +4,7 @@
 
 #include "engine/scene/scene.hpp"
 #include "testbed/motion/live_physics.hpp"
+#include "testbed/record/dive_record.hpp"
 #include "tools/neritic/commands.hpp"
 #include "tools/neritic/interrupt.hpp"
 #include "tools/neritic/recorded_scene.hpp"
@@ -19,9 +20,11 @@ Result<std::unique_ptr<testbed::LivePhysics>> make_dive_physics(const DiveFlags&
                                                                 testbed::LivePhysics::Pace pace,
                                                                 sim::StepClock* clock = nullptr);
 
-// kUnsupported where a mission is not finished though the run was long enough (mission_outlook.hpp)
-// and nothing is saved to go on from. Not while the physics' thread runs.
-Status check_finished(const DiveFlags& flags, const testbed::LivePhysics& physics);
+// kUnsupported where a mission is not finished though the run was long enough, makes no way or is
+// off its place (mission_outlook.hpp), and nothing is saved to go on from. Not while the physics'
+// thread runs.
+Status check_finished(const DiveFlags& flags, const testbed::LivePhysics& physics,
+                      const testbed::DiveRecorder& recorder);
 
 // recorded: of --replay. Precondition: asks_for_physics_alone.
 Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,

@@ -28,6 +28,10 @@ bool all_done(const PhysicsWorld& world, const PhysicsState& state) {
     if (has_end(world.vehicles()[i]) &&
         !world.vehicles()[i].mission->done(state.vehicles()[i].mission))
       return false;
+  for (std::size_t i = 0; i < world.humans().size(); ++i)
+    if (has_end(world.humans()[i]) &&
+        state.humans()[i].arrived < world.humans()[i].waypoints_ned_m.size())
+      return false;
   return true;
 }
 
@@ -57,9 +61,10 @@ SeededRun run_with(scene::Scene scene, std::uint64_t seed, double seconds,
 Status dive_runs(const DiveFlags& flags, const scene::Scene& scene, double seconds,
                  const Interrupt& interrupt) {
   NERITIC_TRY(const auto world, PhysicsWorld::create(scene));
-  if (std::ranges::none_of(world->vehicles(), has_end))
+  const auto ends = [](const auto& participant) { return has_end(participant); };
+  if (std::ranges::none_of(world->vehicles(), ends) && std::ranges::none_of(world->humans(), ends))
     return refusal("--runs", fmt::format("{}, which has no mission with an end", flags.scene),
-                   "waypoints without repeat");
+                   "waypoints without repeat, of a vehicle or of a diver's swim");
   for (const std::string& line : cannot_hold(*world)) log_warn("{}", line);
   std::vector<SeededRun> runs(*flags.runs);
   Progress progress("run", runs.size());

@@ -11,7 +11,7 @@ namespace neritic::tools {
 
 struct RenderedRun {
   std::uint64_t seed = 0;
-  std::vector<MissionOutcome> outcomes;  // of vehicles with a mission that ends
+  std::vector<MissionOutcome> outcomes;  // of missions and plans that end
 };
 using RenderOnce = std::function<Result<std::string>(const RenderFlags& flags, RenderedRun& told)>;
 

@@ -228,19 +228,22 @@ TEST(MissionSpeed, TheOutlookNamesWhatADiverCannotSwim) {
                 diver_text("position_m = [0, -10, 0]\npitch_deg = -90\nswim = { " + swim +
                            ", waypoints_m = [[0, -10, 20], [0, -10, -20]] }\n"));
   };
-  EXPECT_EQ(lines("speed_m_s = 0.3, speed_over = \"ground\""), "");
-  EXPECT_EQ(lines("speed_m_s = 0.5, speed_over = \"ground\""),
-            "diver: 0.5 m/s over ground to waypoint 2 is 0.95 m/s through the water; legs sustain "
-            "some 0.8 m/s");
+  EXPECT_EQ(lines("speed_m_s = 0.15, speed_over = \"ground\""), "");
+  EXPECT_EQ(
+      lines("speed_m_s = 0.5, speed_over = \"ground\""),
+      "diver: 0.5 m/s over ground to waypoint 2 is 0.95 m/s through the water; accepted: up to "
+      "0.65 m/s, which legs reach with fins of 0.4 x 0.2 m");
   EXPECT_EQ(lines("speed_m_s = 0.4"),
-            "diver: 0.4 m/s through the water makes no way to waypoint 2 in a current of 0.45 m/s");
+            "diver: 0.4 m/s through the water makes no way to waypoint 2 in a current of 0.45 m/s; "
+            "accepted: more, up to the 0.65 m/s that legs reach with fins of 0.4 x 0.2 m");
 }
 
 TEST(MissionSpeed, TheOutlookNamesAPlaceInTheAirAndATiltThatThrustersDoNotHold) {
   const std::string mission =
       "position_m = [0, -10, 0]\n[vehicles.mission]\nspeed_m_s = 0.3\nwaypoints = [ { position_m = "
       "[0, -10, -4] }, { position_m = [0, 2, -4] } ]\n";
-  EXPECT_EQ(told(kStillWater + rov_text(mission)), "rov: waypoint 2 lies 2 m above the surface");
+  EXPECT_EQ(told(kStillWater + rov_text(mission)),
+            "rov: waypoint 2 lies 2 m above the surface; accepted: at it or below it");
   std::string text =
       read_text(std::filesystem::path(vehicles_folder()) / "bluerov2_heavy_dynamics.toml").value();
   const std::string centre = "buoyancy_centre_m = [0, 0, -0.01]";

@@ -155,8 +155,8 @@ void add_dive(CLI::App& app, CommandLine& line) {
       ->check(seed_number);
   command
       ->add_option("--runs", flags->runs,
-                   "with --headless: number of dives, with the seeds from --seed on, until their "
-                   "missions are done; a table of outcomes")
+                   "with --headless: number of dives, with the seeds from --seed on, until the "
+                   "missions of vehicles and plans of divers are done; a table of outcomes")
       ->check(between(1, 100000));
   command->add_option("--serve", flags->serve,
                       "lets other programs read and command this dive (neritic serve, hud "
@@ -193,7 +193,9 @@ void add_dive(CLI::App& app, CommandLine& line) {
   command->add_option("--seconds", flags->seconds,
                       "stops after this simulated time (default with --headless: 60 of physics "
                       "alone, 5 of frames). Exit status 1 if a mission is not finished in a time "
-                      "that suffices for its way at its speed, and --save is not given");
+                      "that suffices for its way at its speed, a vehicle or diver comes no nearer "
+                      "to a waypoint for 20 s, or a vehicle ends more than 2 m off its station, "
+                      "orbit or whom it follows, and --save is not given");
   command->add_option("--frames", flags->frames, "stops after this number of frames")
       ->check(between(1, 1000000));
   command->add_option("--screenshot", flags->screenshot, "writes the last frame to this .png")
