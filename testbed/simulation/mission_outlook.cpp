@@ -342,7 +342,8 @@ std::vector<std::string> unfinished(const PhysicsWorld& world, const PhysicsStat
     const VehicleState& now = state.vehicles()[i];
     if (!vehicle.mission || now.mission.piloted != 0) continue;  // or somebody else flies it
     const MissionGuide& mission = *vehicle.mission;
-    const auto stalled_s = progress ? progress->stalled_vehicle_s(i) : std::nullopt;
+    std::optional<double> stalled_s;
+    if (progress) stalled_s = progress->stalled_vehicle_s(i);
     if (mission.waypoint_count() == 0) {
       if (const auto off_m = progress ? progress->off_place_m(i) : std::nullopt)
         lines.push_back(fmt::format("{}: {:.3g} m off {} at the end; accepted: up to {:g} m",

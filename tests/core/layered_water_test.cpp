@@ -35,8 +35,9 @@ TEST(LayeredWater, ItsWeightIsThatOfAllLayersAbove) {
         sum_of_slices(0.0, depth_m, [&](double z) { return column.density_kg_m3(z); });
     EXPECT_NEAR(water.mass_above_kg_m2(depth_m), slices_kg_m2, 1e-6 * slices_kg_m2) << depth_m;
     // The density there times the depth is not it.
-    if (depth_m > 9.0)
+    if (depth_m > 9.0) {
       EXPECT_GT(column.density_kg_m3(depth_m) * depth_m - slices_kg_m2, 150.0) << depth_m;
+    }
   }
   EXPECT_EQ(water.mass_above_kg_m2(0.0), 0.0);
   EXPECT_EQ(water.mass_above_kg_m2(-3.0), 0.0);

@@ -61,6 +61,12 @@ struct Folder {
 void check_mount(const scene::Scene& scene, const scene::Mount& mount) {
   NERITIC_CHECK(mount.object >= -1 && mount.object < static_cast<int>(scene.objects.size()),
                 "mount on object {}", mount.object);
+  if (mount.joint >= 0) {
+    const int model = mount.object < 0 ? -1 : scene.objects[std::size_t(mount.object)].model;
+    NERITIC_CHECK(
+        model >= 0 && std::size_t(mount.joint) < scene.models[std::size_t(model)]->nodes.size(),
+        "joint {} of object {}", mount.joint, mount.object);
+  }
   const Pose pose = scene.world_from(mount);
   for (int i = 0; i < 3; ++i) NERITIC_CHECK(std::isfinite(pose.position_m[i]), "position");
   NERITIC_CHECK(std::abs(glm::length(pose.rotation) - 1.0) < 1e-6, "rotation");
