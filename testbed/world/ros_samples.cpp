@@ -327,6 +327,7 @@ void describe(Io& io, auto& p, const rov::DvlReading*) {
   io.number("altitude_m", p.altitude_m);
   io.list("range_m", p.range_m);
   io.list("beam_velocity", p.speed_m_s);
+  io.number("sound_speed_m_s", p.sound_m_s);
   io.bits("heard", p.heard, 4);
 }
 template <class Io>

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "testbed/simulation/mission_outlook.hpp"
+#include "testbed/simulation/swim_outlook.hpp"
 #include "tests/testbed/simulation/senders.hpp"
 
 namespace neritic::testbed {
@@ -236,6 +237,38 @@ TEST(MissionSpeed, TheOutlookNamesWhatADiverCannotSwim) {
   EXPECT_EQ(lines("speed_m_s = 0.4"),
             "diver: 0.4 m/s through the water makes no way to waypoint 2 in a current of 0.45 m/s; "
             "accepted: more, up to the 0.65 m/s that legs reach with fins of 0.4 x 0.2 m");
+}
+
+// Fins reach more than bare feet, and both what a run of them shows.
+TEST(MissionSpeed, TheOutlookNamesASpeedThatTheFeetDoNotReach) {
+  const test::ScratchFolder scratch;
+  ASSERT_TRUE(write_text(scratch / "bare.toml", "name = \"bare\"\nfins = false\n").ok());
+  const auto scene = [&](const std::string& human, double speed_m_s) {
+    return kStillWater +
+           diver_text(fmt::format("position_m = [0, -10, 0]\npitch_deg = -90\nswim = {{ "
+                                  "speed_m_s = {}, waypoints_m = [[0, -10, -90]] }}\n",
+                                  speed_m_s),
+                      human);
+  };
+  const std::string bare = (scratch / "bare.toml").string();
+  EXPECT_EQ(told(scene({}, 0.6)), "");
+  EXPECT_EQ(
+      told(scene({}, 1.0)),
+      "diver: 1 m/s to waypoint 1 found; accepted: up to 0.65 m/s, which legs reach with fins "
+      "of 0.4 x 0.2 m");
+  const std::string line = told(scene(bare, 0.6));
+  EXPECT_NE(line.find("diver: 0.6 m/s to waypoint 1 found; accepted: up to 0."), std::string::npos)
+      << line;
+  EXPECT_NE(line.find(" m/s, which legs reach with bare feet"), std::string::npos) << line;
+  for (const std::string& human : {std::string(), bare}) {
+    TestDive dive = dive_of(scene(human, 1.2));
+    dive.run(20.0);
+    const Vec3 from = dive.state().humans()[0].human.root.position_ned_m;
+    dive.run(10.0);
+    const double swum_m_s =
+        glm::distance(dive.state().humans()[0].human.root.position_ned_m, from) / 10.0;
+    EXPECT_NEAR(fastest_m_s(dive.world->humans()[0]), swum_m_s, 0.05);
+  }
 }
 
 TEST(MissionSpeed, TheOutlookNamesAPlaceInTheAirAndATiltThatThrustersDoNotHold) {

@@ -88,5 +88,28 @@ TEST(PlaceOutlook, NamesADopplerLogThatNeverHearsABottom) {
             std::string::npos);
 }
 
+// Of a diver's plan as of a vehicle's mission: he reaches a place within his acceptance of it.
+TEST(PlaceOutlook, NamesADiversWaypointsInTheAirTheBedAndAnObstacle) {
+  const auto told = [](const std::string& points, const std::string& more) {
+    return places_told("[physics]\n" +
+                       diver_text("position_m = [0, -10, 0]\npitch_deg = -90\nswim = { speed_m_s = "
+                                  "0.2, waypoints_m = [" +
+                                  points + "] }\n") +
+                       more);
+  };
+  EXPECT_EQ(told("[0, -10, -20], [0, -9, -60], [0, 1.5, -160]", bed_text(-20)),
+            "diver: waypoint 3 lies 1.5 m above the surface; accepted: at it or below it\n");
+  EXPECT_EQ(told("[0, -10, -20], [0, -13, -60], [0, -18, -90]", bed_text(-14)),
+            "diver: waypoint 3 lies 4 m below the bed sand: it is not reached; move it into the "
+            "water, or give sand collision = false\n");
+  const std::string boulder =
+      "[[objects]]\nname = \"boulder\"\nclass = \"rock\"\nshape = \"box\"\nsize_m = [8, 8, 8]\n"
+      "position_m = [0, -10, -30]\n";
+  const std::string inside = told("[0, -10, -30]", boulder);
+  EXPECT_NE(inside.find("diver: waypoint 1 lies "), std::string::npos) << inside;
+  EXPECT_NE(inside.find(" m in boulder: it is not reached"), std::string::npos) << inside;
+  EXPECT_EQ(told("[0, -10, -24.5]", boulder), "");
+}
+
 }  // namespace
 }  // namespace neritic::testbed

@@ -66,5 +66,42 @@ TEST(WaterLayers, ChillADiverAsWaterOfThatTemperatureDoes) {
   EXPECT_GT(cold(warm, "{ water_c = 20 }").skin_c, layers + 1.0);
 }
 
+// Fresh water over salt weighs less than salt alone: 18 m down by 28 kg/m^3 times 6 m, which is
+// 0.17 m.
+TEST(WaterLayers, PressOnAVehiclesSensorAndOnADiverByTheWeightOfAllAbove) {
+  TestDive dive = dive_of(std::string(kStillWater) + kHalocline +
+                          rov_text("position_m = [0, -18, 0]\nnavigation = \"truth\"\n", "rov",
+                                   "bluerov2_heavy_survey_dynamics.toml") +
+                          diver_text(std::string(kProne) + "position_m = [5, -18, 0]\n"));
+  dive.run(0.1);
+  const WaterColumn column = *dive.scene.water->column;
+  double above_kg_m2 = 0.0;  // 18 m down, in slices of a centimetre
+  for (int i = 0; i < 1800; ++i) above_kg_m2 += 0.01 * column.density_kg_m3(0.01 * (i + 0.5));
+  EXPECT_GT(18.0 * column.density_kg_m3(18.0) - above_kg_m2, 160.0);
+  const rov::SensorReadings& readings = *dive.world->readings(dive.state(), 0);
+  ASSERT_GT(readings.pressure.count, 0u);
+  EXPECT_NEAR(readings.pressure.value.pressure_pa, 101325.0 + 9.82 * above_kg_m2, 700.0);
+  EXPECT_LT(readings.pressure.value.pressure_pa,
+            101325.0 + 9.82 * 18.0 * column.density_kg_m3(18.0) - 900.0);
+  const PhysicsHuman& diver = dive.world->humans()[0];
+  EXPECT_NEAR(diver::pressure_at(diver.body, 18.0),
+              diver.body.surface_pa + diver::kGravity_m_s2 * above_kg_m2, 5.0);
+}
+
+// A set that is not told of warm water fixes the vehicle too near, as a real one would.
+TEST(WaterLayers, SoundCarriesUsblRangesAtItsOwnSpeed) {
+  TestDive dive = dive_of(std::string(kStillWater) + kHalocline +
+                          rov_text("position_m = [0, -18, -60]\nnavigation = \"truth\"\n", "rov",
+                                   "bluerov2_heavy_survey_dynamics.toml"));
+  dive.run(3.0);
+  const rov::UsblReading& reading = dive.world->readings(dive.state(), 0)->usbl.value;
+  ASSERT_EQ(reading.heard, 1u);
+  const rov::Usbl& usbl = *dive.world->vehicles()[0].file.sensors.usbl;
+  const Vec3 at = dive.vehicle().body.position_ned_m + dive.vehicle().body.attitude * usbl.beacon_m;
+  const double distance_m = glm::distance(at, usbl.transceiver_ned_m);
+  EXPECT_NEAR(2.0 * distance_m / reading.travel_s, 1485.0, 8.0);  // 1482.4 fresh, 1490 salt
+  EXPECT_GT(std::abs(1500.0 * 0.5 * reading.travel_s - distance_m), 0.3);
+}
+
 }  // namespace
 }  // namespace neritic::testbed
