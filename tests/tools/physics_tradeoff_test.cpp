@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "engine/core/files.hpp"
 #include "rov/step_choice.hpp"
 #include "tests/support/support.hpp"
 #include "tools/tradeoff/extrapolation.hpp"
+#include "tools/tradeoff/mission_flights.hpp"
 #include "tools/tradeoff/physics_flights.hpp"
 
 namespace neritic::tools {
@@ -165,11 +167,41 @@ TEST(PhysicsTradeoff, WhatAnErrorChoosesHoldsOnUnevenGroundAndAtTheWreck) {
   }
 }
 
+// Whole missions of other vehicles, currents, speeds and ways than those of the sweep, under
+// control by pulses in whole microseconds.
+TEST(PhysicsTradeoff, WhatAnErrorChoosesHoldsOnMissionsThatItWasNotMeasuredOn) {
+  const auto assets = test::source_dir() / "assets";
+  std::vector<MissionFlight> missions;
+  // An orbit on which 80 Hz, which 1e-3 picked, is 1.2e-3 m off, and 240 Hz 1.5e-3.
+  missions.push_back(mission_flights(5)[5]);
+  for (const std::size_t i : {1, 3, 9, 10}) missions.push_back(mission_flights(77)[i]);
+  std::set<double> rates;
+  for (const MissionFlight& mission : missions) {
+    const bool orbit = &mission == &missions.front();
+    const auto path = [&](const MissionStep& step) {
+      const auto flown = flown_path(mission, assets, orbit ? 20.0 : 8.0, step);
+      EXPECT_TRUE(flown.ok()) << (flown.ok() ? "" : flown.error().message);
+      return flown.ok() ? *flown : std::vector<Vec3>();
+    };
+    const std::vector<Vec3> truth = path({.hz = 4000.0, .rk4 = true});
+    ASSERT_GE(truth.size(), 80u);
+    for (const double asked_m : {3e-3, 2e-3, 1e-3, rov::kTurnedPulse_m}) {
+      rates.insert(rov::cheapest_step(asked_m, rov::Touchable::kNothing)->hz);
+      EXPECT_LE(most_apart_m(path({.max_error_m = asked_m}), truth), asked_m) << mission.name;
+    }
+    if (orbit) EXPECT_GT(most_apart_m(path({.hz = 80.0}), truth), 1e-3);
+  }
+  EXPECT_EQ(rates.size(), 4u);
+}
+
 TEST(PhysicsTradeoff, AnErrorBecomesTheCheapestRateThatHoldsIt) {
   using enum rov::Touchable;
-  EXPECT_EQ(rov::cheapest_step(1e-3, kNothing)->hz, 80.0);
+  EXPECT_EQ(rov::cheapest_step(3e-3, kNothing)->hz, 80.0);
+  EXPECT_EQ(rov::cheapest_step(2e-3, kNothing)->hz, 240.0);
+  EXPECT_EQ(rov::cheapest_step(1e-3, kNothing)->hz, 500.0);
   EXPECT_EQ(rov::cheapest_step(1e-5, kNothing)->hz, 1000.0);
-  EXPECT_EQ(rov::cheapest_step(1.2e-8, kNothing)->hz, 1000.0);
+  EXPECT_EQ(rov::cheapest_step(1.2e-7, kNothing)->hz, 1000.0);
+  EXPECT_FALSE(rov::cheapest_step(5e-8, kNothing).ok());
   EXPECT_EQ(rov::cheapest_step(5e-2, kEven)->contact_error_m, 0.0);
   EXPECT_EQ(rov::cheapest_step(1e-2, kEven)->contact_error_m, 1e-4);
   EXPECT_EQ(rov::cheapest_step(1e-2, kNothing)->contact_error_m, 0.0);

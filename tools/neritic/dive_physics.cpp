@@ -8,6 +8,7 @@
 #include "testbed/loop/loop.hpp"
 #include "testbed/record/source_watch.hpp"
 #include "testbed/samples/recorded_source.hpp"
+#include "testbed/simulation/error_outlook.hpp"
 #include "testbed/simulation/mission_outlook.hpp"
 #include "tools/neritic/device_notes.hpp"
 #include "tools/neritic/dive_runs.hpp"
@@ -38,6 +39,7 @@ Result<std::unique_ptr<LivePhysics>> make_dive_physics(const DiveFlags& flags,
     NERITIC_TRY(options.start, start_of(*recorded, flags.replay, *world));
   }
   for (const std::string& line : cannot_hold(*world)) log_warn("{}", line);
+  if (const std::string line = not_promised(scene, *world); !line.empty()) log_warn("{}", line);
   return LivePhysics::create(std::move(world), options);
 }
 

@@ -10,6 +10,7 @@
 #include "engine/sim/workers.hpp"
 #include "testbed/loop/loop.hpp"
 #include "testbed/record/file_sinks.hpp"
+#include "testbed/simulation/error_outlook.hpp"
 #include "testbed/simulation/mission_outlook.hpp"
 #include "tools/neritic/flags.hpp"
 #include "tools/neritic/mission_outcomes.hpp"
@@ -66,6 +67,7 @@ Status dive_runs(const DiveFlags& flags, const scene::Scene& scene, double secon
     return refusal("--runs", fmt::format("{}, which has no mission with an end", flags.scene),
                    "waypoints without repeat, of a vehicle or of a diver's swim");
   for (const std::string& line : cannot_hold(*world)) log_warn("{}", line);
+  if (const std::string line = not_promised(scene, *world); !line.empty()) log_warn("{}", line);
   std::vector<SeededRun> runs(*flags.runs);
   Progress progress("run", runs.size());
   std::mutex told;  // guards progress

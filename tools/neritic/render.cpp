@@ -12,6 +12,7 @@
 #include "testbed/sensors/sight_check.hpp"
 #include "testbed/sensors/sonar_check.hpp"
 #include "testbed/sensors/validation.hpp"
+#include "testbed/simulation/error_outlook.hpp"
 #include "testbed/simulation/mission_outlook.hpp"
 #include "tools/common/outputs.hpp"
 #include "tools/neritic/commands.hpp"
@@ -228,6 +229,7 @@ Result<std::unique_ptr<LivePhysics>> make_physics(const RenderFlags& flags,
     NERITIC_TRY(options.start, start_of(*recorded, flags.replay, *world));
   } else if (last_s > 0.0) {
     for (const std::string& line : cannot_hold(*world)) log_warn("{}", line);
+    if (const std::string line = not_promised(scene, *world); !line.empty()) log_warn("{}", line);
   }
   auto physics = LivePhysics::create(std::move(world), options);
   const auto counts = physics->world().solid().counts();

@@ -87,6 +87,39 @@ std::string halved_md(const PhysicsTradeoff& t) {
   return out;
 }
 
+// What is asked or flown by, as a column's heading: rates, or the error that was asked for.
+std::string missions_md(const PhysicsTradeoff& t, bool touch) {
+  std::string out = touch ? "\n## Missions that touch something, by the error that is asked\n\n| "
+                            "mission | truth is sure to, m |"
+                          : "\n## Missions in open water, by the rate (guarded)\n\n| mission | "
+                            "truth is sure to, m |",
+              rule = "\n|---|---|";
+  std::vector<double> worst;
+  const auto heading = [&](const std::string& words) {
+    out += fmt::format(" {}, m | us |", words);
+    rule += "---|---|";
+    worst.push_back(0.0);
+  };
+  if (touch)
+    for (const double asked_m : kAskedInContact_m) heading(fmt::format("{:g}", asked_m));
+  else
+    for (const rov::MeasuredRate& rate : rov::measured_rates())
+      heading(fmt::format("{:g} Hz", rate.hz));
+  out += rule + "\n";
+  for (const MissionError& mission : t.missions) {
+    if (mission.touches != touch) continue;
+    out += fmt::format("| {} | {:.0e} |", mission.flight, mission.truth_error_m);
+    for (std::size_t i = 0; i < mission.error_m.size(); ++i) {
+      out += fmt::format(" {} | {:.0f} |", number_text(mission.error_m[i]), mission.us_a_second[i]);
+      worst[i] = std::max(worst[i], mission.error_m[i]);
+    }
+    out += "\n";
+  }
+  out += "| worst | |";
+  for (const double error_m : worst) out += fmt::format(" {} | |", number_text(error_m));
+  return out + "\n";
+}
+
 std::string physics_md(const PhysicsTradeoff& t) {
   std::string out =
       "# Physics: error against cost\n\nThe largest distance from the truth, and microseconds of "
@@ -108,7 +141,7 @@ std::string physics_md(const PhysicsTradeoff& t) {
       out += "\n";
     }
   }
-  out += halved_md(t);
+  out += halved_md(t) + missions_md(t, false) + missions_md(t, true);
   out +=
       "\n## Cheapest that holds an error in open water, with and without lag\n\n| m | integrator | "
       "step, ms | us |\n|---|---|---|---|\n";
@@ -130,6 +163,12 @@ nlohmann::json point_json(const PhysicsPoint& p) {
 
 nlohmann::json physics_json(const PhysicsTradeoff& t) {
   nlohmann::json json{{"flight_s", t.flight_s}, {"truth_error_m", t.truth_error_m}};
+  for (const MissionError& m : t.missions)
+    json["missions"].push_back({{"name", m.flight},
+                                {"touches", m.touches},
+                                {"truth_error_m", m.truth_error_m},
+                                {"error_m", m.error_m},
+                                {"us_a_second", m.us_a_second}});
   for (const char* flight : kFlightNames)
     if (const PhysicsPoint* p = knee(t, flight)) json["knees"][flight] = point_json(*p);
   for (const double level : kLevels_m)

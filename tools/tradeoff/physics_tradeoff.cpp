@@ -124,6 +124,15 @@ void measure_flight(Flight& flight, const PhysicsTradeoffOptions& options, Physi
 
 }  // namespace
 
+namespace {
+
+// Quick: one, and one that touches something.
+std::size_t mission_count(const PhysicsTradeoffOptions& options) {
+  return options.quick ? 2 : mission_flights().size();
+}
+
+}  // namespace
+
 FlownError flown_error(const Flight& flight, double step_s, const StepMethod& method) {
   FlownError out;
   const int count = static_cast<int>(std::lround(kHold_s / step_s));
@@ -138,7 +147,8 @@ FlownError flown_error(const Flight& flight, double step_s, const StepMethod& me
 }
 
 std::uint64_t steps(const PhysicsTradeoffOptions& options) {
-  return kFlights * (1 + std::size(kIntegrators) * counts_of(options).size());
+  return mission_count(options) +
+         kFlights * (1 + std::size(kIntegrators) * counts_of(options).size());
 }
 
 Result<PhysicsTradeoff> run_physics_tradeoff(const PhysicsTradeoffOptions& options) {
@@ -150,6 +160,11 @@ Result<PhysicsTradeoff> run_physics_tradeoff(const PhysicsTradeoffOptions& optio
     options.step();
     measure_flight(flight, options, out);
   }
+  std::vector<MissionFlight> missions = mission_flights();
+  if (options.quick) missions = {missions.front(), missions.back()};
+  NERITIC_TRY(out.missions, fly_missions(missions, {.assets = options.scene.parent_path() / "..",
+                                                    .seconds = out.flight_s,
+                                                    .step = options.step}));
   return out;
 }
 

@@ -1,7 +1,8 @@
 // `neritic tradeoff physics`: how far each integrator of the vehicle's motion strays from the true
 // path, and what it costs, over step sizes from 1 to 50 ms, with and without the thrusters' lag, in
-// open water and among things that it touches; and what bounces, slides and rolls against closed
-// forms. One thread.
+// open water and among things that it touches; what bounces, slides and rolls against closed forms;
+// and whole missions of scenes at the rates that max_error_m picks (mission_flights.hpp). One
+// thread.
 #pragma once
 
 #include <filesystem>
@@ -12,13 +13,15 @@
 
 #include "engine/core/result.hpp"
 #include "testbed/simulation/body_step.hpp"
+#include "tools/tradeoff/mission_flights.hpp"
 
 namespace neritic::tools {
 
 struct PhysicsTradeoffOptions {
   bool quick = false;  // a shorter flight, timed once: to see that it works
-  std::filesystem::path scene = "assets/scenes/mission.toml";  // with the wreck and a vehicle
-  std::function<void()> step = [] {};                          // after each of steps(options)
+  // With the wreck and a vehicle; the assets' folder is the one above its own.
+  std::filesystem::path scene = "assets/scenes/mission.toml";
+  std::function<void()> step = [] {};  // after each of steps(options)
 };
 std::uint64_t steps(const PhysicsTradeoffOptions& options);
 
@@ -55,6 +58,7 @@ struct PhysicsTradeoff {
   // By the recommended integrator, of all that touches, at the two rates that max_error_m chooses:
   // steps that touch halved more and more.
   std::vector<PhysicsPoint> halved;
+  std::vector<MissionError> missions;
 };
 // The farthest from the truth, by one way to step. Not finite: it diverged.
 struct Flight;

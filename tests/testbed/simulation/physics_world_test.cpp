@@ -163,9 +163,11 @@ TEST(PhysicsWorld, AnErrorChoosesTheStep) {
     EXPECT_TRUE(scene.ok());
     return PhysicsWorld::create(*scene);
   };
-  EXPECT_NEAR((*world_of("1e-3"))->step_s(), 1.0 / 80.0, 1e-12);
-  EXPECT_NEAR((*world_of("2e-8"))->step_s(), 1.0 / 1000.0, 1e-12);
-  EXPECT_EQ((*world_of("2e-8"))->method().contact_error_m, 0.0);
+  EXPECT_NEAR((*world_of("3e-3"))->step_s(), 1.0 / 80.0, 1e-12);
+  EXPECT_NEAR((*world_of("2e-3"))->step_s(), 1.0 / 240.0, 1e-12);
+  EXPECT_NEAR((*world_of("1e-3"))->step_s(), 1.0 / 500.0, 1e-12);
+  EXPECT_NEAR((*world_of("2e-7"))->step_s(), 1.0 / 1000.0, 1e-12);
+  EXPECT_EQ((*world_of("2e-7"))->method().contact_error_m, 0.0);
   const auto refused = world_of("1e-15");
   ASSERT_FALSE(refused.ok());
   EXPECT_NE(refused.error().message.find("dive.toml: physics.max_error_m: found 1e-15"),
@@ -175,7 +177,7 @@ TEST(PhysicsWorld, AnErrorChoosesTheStep) {
   const char* wall = "[[objects]]\nclass = 'structure'\nshape = 'box'\nposition_m = [0, -5, -9]\n";
   const auto among = world_of("1e-3", wall);
   ASSERT_TRUE(among.ok());
-  EXPECT_NEAR((*among)->step_s(), 1.0 / 80.0, 1e-12);
+  EXPECT_NEAR((*among)->step_s(), 1.0 / 500.0, 1e-12);
   EXPECT_EQ((*among)->method().contact_error_m, 1e-4);
   const auto better = world_of("1e-5", wall);
   ASSERT_TRUE(better.ok());
