@@ -49,7 +49,8 @@ void MissionProgress::add(const sim::Snapshot<PhysicsState>& snapshot) {
     const PhysicsHuman& human = world_.humans()[i];
     const HumanPhysics& now = snapshot.state.humans()[i];
     const std::size_t count = human.waypoints_ned_m.size();
-    const bool swims = count > 0 && (human.repeat || now.arrived < count);
+    // Whose jacket a file inflates is carried off on purpose (assets/scenes/ascent.toml).
+    const bool swims = count > 0 && (human.repeat || now.arrived < count) && !human.buttons;
     const GroupState& body = now.groups[static_cast<std::size_t>(DiverGroup::kBody)];
     if (!swims || acting(body) != Authority::kAutopilot) {
       humans_[i].led = false;
