@@ -114,13 +114,15 @@ vec2 farthest_step(SonarColumn s, int v, ivec2 beside, float planar, float range
   return to_next.x > 0.0 ? to_next : 0.25 * behind;
 }
 
-// Where the plane meets the edges of a row that is lower than a bin: by the plane's slope at its centre.
-void find_close_ends(SonarColumn s, vec2 edges, float along, float along_up, float most_m, inout BeamHit hit) {
-  float half_tan = 0.5 * (edges.y - edges.x) * s.sec_theta;
-  float slope = abs(along_up / along);
-  float reach = min(hit.range_m * min(half_tan * slope, kLargestStretch - 1.0), most_m);
-  hit.ends_m = hit.range_m + vec2(-reach, reach);
-  hit.ends_tan = along * along_up <= 0.0 ? edges : edges.yx;
+// Where the plane meets the edges of a row that is lower than a bin: by how the range r goes with the tangent t of the
+// elevation at its centre, d ln r / dt = t / (1 + t^2) - sec along_up / along. At grazing r goes with 1 / along, so that
+// the far edge lies farther from the centre than the near one, and rows abut.
+void find_close_ends(SonarColumn s, vec4 row, float along, float along_up, float most_m, inout BeamHit hit) {
+  float steep = row.x / (row.y * row.y) - s.sec_theta * along_up / along;
+  float reach = min(0.5 * (row.w - row.z) * abs(steep), 1.0 - 1.0 / kLargestStretch);
+  hit.ends_m = hit.range_m / (1.0 + vec2(reach, -reach));
+  hit.ends_m = clamp(hit.ends_m, vec2(hit.range_m - most_m), vec2(hit.range_m + most_m));
+  hit.ends_tan = steep >= 0.0 ? row.zw : row.wz;
 }
 
 // Where the plane meets the lower and the upper edge of the row. neighbours_m: neighbour_range of the rows there.
@@ -167,8 +169,8 @@ float part_below(Share share, int bin) {
   return clamp((r - share.ends.x) * (r + share.ends.x) / (r * r) * share.scale, 0.0, share.whole);
 }
 
-// A footprint of a part of a bin, which is shared out as its centre.
-const float kShortest_bins = 0.25;
+// A shorter footprint is shared out as its centre: where fewer than n rows fill a bin, bins would ripple by 1 / n.
+const float kShortest_bins = 0.02;
 
 vec2 shared_ends(vec2 ends_m, float range_m) {
   if ((ends_m.y - ends_m.x) * c.bins_per_m < kShortest_bins) return vec2(range_m);
@@ -278,7 +280,7 @@ BeamHit hit_of(SonarColumn s, Look look, vec2 neighbours_m, bool again) {
   hit.strength = min(facing(-along / length_of), 1.0);
   hit.range_m = planar * length_of;
   if (kFootprint == kSonarFootprintShared)
-    find_close_ends(s, e.zw, along, along_up, most_m, hit);
+    find_close_ends(s, e, along, along_up, most_m, hit);
   if (kFootprint == kSonarFootprintBounded)
     find_ends(s, neighbours_m, e.zw, most_m == 0.0, plane,
               ahead + s.tan_theta * sideways + e.zw * s.sec_theta * along_up, along_pixel, hit);

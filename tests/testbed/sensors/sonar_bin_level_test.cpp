@@ -70,28 +70,41 @@ scene::Scene over_a_floor(const scene::Sonar& sonar) {
   return scene;
 }
 
-// Mean over bins and beams, leaving out what a pulse or a wide bin at the ends of the range cuts,
-// over the same mean of EL = SL + 10 log mu + 20 log sin(grazing) + 10 log A - 40 log r - 2 alpha
-// r, of the area A = r dtheta W that the pulse's length W cuts out.
-double floor_over_equation_db(const SonarFrame& frame, double resolution_m) {
+// The mean over the beams of each bin, and the mean over the bin of EL = SL + 10 log mu + 20 log
+// sin(grazing) + 10 log A - 40 log r - 2 alpha r, of the area A = r dtheta W that the pulse's
+// length W cuts out. Bins that the ends of the range cut, or a pulse there, are left out.
+struct BinPower {
+  double heard = 0.0, equation = 0.0;
+};
+std::vector<BinPower> floor_by_bins(const SonarFrame& frame, double resolution_m) {
   const double pulse_m = 1.5 * resolution_m;  // Hann
   const double bin_m = frame.grid.range_step_m();
-  double heard = 0.0, equation = 0.0;
+  std::vector<BinPower> out;
   for (std::uint32_t row = 0; row < frame.image.n_range; ++row) {
     const double middle_m = frame.grid.range_m(row);
     const double margin_m = 2.0 * bin_m + 3.0 * pulse_m;
     if (middle_m < kBinsFrom_m + margin_m || middle_m > kBinsTo_m - margin_m) continue;
+    BinPower& bin = out.emplace_back();
     constexpr int kSteps = 50;
     for (int i = 0; i < kSteps; ++i) {
       const double r = middle_m + ((i + 0.5) / kSteps - 0.5) * bin_m, sine = kFloorBelow_m / r;
-      equation += std::pow(10.0, 20.0 - 2.7) * sine * sine * r * frame.grid.azimuth_step_rad() *
-                  pulse_m / std::pow(r, 4) * std::pow(10.0, -0.2 * 0.3 * r) / kSteps;
+      bin.equation += std::pow(10.0, 20.0 - 2.7) * sine * sine * r * frame.grid.azimuth_step_rad() *
+                      pulse_m / std::pow(r, 4) * std::pow(10.0, -0.2 * 0.3 * r) / kSteps;
     }
     for (std::uint32_t c = 0; c < frame.image.n_azimuth; ++c)
-      heard += frame.image.intensity[std::size_t{row} * frame.image.n_azimuth + c] /
-               frame.image.n_azimuth;
+      bin.heard += frame.image.intensity[std::size_t{row} * frame.image.n_azimuth + c] /
+                   frame.image.n_azimuth;
   }
-  return 10.0 * std::log10(heard / equation);
+  return out;
+}
+
+double floor_over_equation_db(const SonarFrame& frame, double resolution_m) {
+  BinPower sum;
+  for (const BinPower& bin : floor_by_bins(frame, resolution_m)) {
+    sum.heard += bin.heard;
+    sum.equation += bin.equation;
+  }
+  return 10.0 * std::log10(sum.heard / sum.equation);
 }
 
 TEST_F(SonarBinLevel, AFloorReadsTheSonarEquationInBinsOfAnyWidth) {
@@ -101,6 +114,27 @@ TEST_F(SonarBinLevel, AFloorReadsTheSonarEquationInBinsOfAnyWidth) {
       EXPECT_NEAR(floor_over_equation_db(frame, d.resolution_m), 0.0, 0.1)
           << d.name << ", bins of " << bin_m << " m";
     }
+}
+
+// Each bin by itself: where a row is a part of a bin high, bins that hold one row more than their
+// neighbours do not ripple.
+TEST_F(SonarBinLevel, EachBinOfAFloorReadsTheSonarEquation) {
+  for (const BinnedDevice& d : binned_devices())
+    for (const double pulses : {0.5, 1.0, 2.0, 5.0, 10.0})
+      for (const std::uint32_t rows : {512u, 800u}) {
+        const double bin_m = pulses * 1.5 * d.resolution_m;
+        scene::Sonar sonar = with_bins(d, bin_m);
+        sonar.bins_elevation = rows;
+        const SonarFrame frame = ping(device(), over_a_floor(sonar));
+        double least_db = INFINITY, most_db = -INFINITY;
+        for (const BinPower& bin : floor_by_bins(frame, d.resolution_m)) {
+          const double off_db = 10.0 * std::log10(bin.heard / bin.equation);
+          least_db = std::min(least_db, off_db);
+          most_db = std::max(most_db, off_db);
+        }
+        EXPECT_GT(least_db, -0.1) << d.name << ", bins of " << pulses << " pulses, " << rows;
+        EXPECT_LT(most_db, 0.1) << d.name << ", bins of " << pulses << " pulses, " << rows;
+      }
 }
 
 // The same of both sides of a side-scan.
