@@ -190,7 +190,7 @@ TEST(RovCable, HangingInTheAirItSwingsAsAChainDoes) {
   std::vector<double> crossings;
   for (int i = 1; crossings.size() < 3 && i < 20'000; ++i) {
     rig.step(dt_s);
-    if (last_x > 0.0 != rig.end.x > 0.0)
+    if ((last_x > 0.0) != (rig.end.x > 0.0))
       crossings.push_back((i - rig.end.x / (rig.end.x - last_x)) * dt_s);
     last_x = rig.end.x;
   }
@@ -272,7 +272,9 @@ TEST(RovCable, TheSameBitsAgainAndStepsOfAnyLengthAreFinite) {
     a.current = b.current = Vec3(3.0, -2.0, 1.0);
     for (int i = 0; i < 20; ++i) {
       const CablePull pull = a.step(dt_s);
-      if (dt_s <= 1.0) EXPECT_TRUE(pull.converged) << dt_s << " step " << i;
+      if (dt_s <= 1.0) {
+        EXPECT_TRUE(pull.converged) << dt_s << " step " << i;
+      }
       b.step(dt_s);
     }
     for (std::size_t i = 0; i < a.nodes.size(); ++i) {

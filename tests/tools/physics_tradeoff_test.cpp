@@ -189,7 +189,9 @@ TEST(PhysicsTradeoff, WhatAnErrorChoosesHoldsOnMissionsThatItWasNotMeasuredOn) {
       rates.insert(rov::cheapest_step(asked_m, rov::Touchable::kNothing)->hz);
       EXPECT_LE(most_apart_m(path({.max_error_m = asked_m}), truth), asked_m) << mission.name;
     }
-    if (orbit) EXPECT_GT(most_apart_m(path({.hz = 80.0}), truth), 1e-3);
+    if (orbit) {
+      EXPECT_GT(most_apart_m(path({.hz = 80.0}), truth), 1e-3);
+    }
   }
   EXPECT_EQ(rates.size(), 4u);
 }
