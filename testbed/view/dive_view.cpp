@@ -141,13 +141,16 @@ bool DiveView::take_input() {
   take_click();
   if (input.next_lamps) switch_lamps();
   if (input.view_step != 0) wears_ = false;
-  if (input.reset) wears_ = true;
+  if (input.reset) {
+    wears_ = true;
+    if (wearer_) wearer_->face_ahead();
+  }
   const bool swum = swum_by_keys(input);
   // Until the stage lies at the diver's eyes, poses in it mean nothing to him.
   const double speed = options_.clock ? options_.clock->speed() : 1.0;
   if (wearer_)
     wearer_->take(wears_ && placed_ ? frame_ : xr::DisplayFrame{}, input, choice_.world_from_eyes(),
-                  speed);
+                  speed, elapsed_s_);
   const bool flew = pilot_.flying();
   DiveInput flown = input;
   if (swum) flown.move = Vec3(0.0), flown.turn = 0.0;

@@ -17,6 +17,17 @@ constexpr double kAhead_m = 5.0;                      // of the place that is sw
 constexpr double kLongestStep_s = 0.05;
 // By keys: a turn aims so far beside the course, and one without a push ahead swims so slowly.
 constexpr double kTurn_rad = radians(60.0), kTurningShare = 0.4;
+// The stage follows a body that is turned by more than this off it, as slowly as this. Strokes sway
+// a body by up to 20 degrees; what turns faster makes wearers sick.
+constexpr double kSway_rad = radians(30.0), kStageFollow_s = 1.5,
+                 kMostStageTurn_rad_s = radians(15.0);
+constexpr double kStageTurn_rad_s = radians(60.0), kLongestStageTurn_s = 0.1;
+// A wearer who looks farther off the body than a neck turns brings the body round.
+constexpr double kNeck_rad = radians(75.0), kAhead_rad = radians(20.0);
+
+double off_rad(double to_rad, double from_rad) {
+  return std::remainder(to_rad - from_rad, 2.0 * kPi);
+}
 
 }  // namespace
 
@@ -28,19 +39,33 @@ Wearer::Wearer(LivePhysics& physics)
   eyes_m_ = {eyes.y, eyes.x, -eyes.z};  // of forward, starboard, down (diver/frames.hpp)
 }
 
-// The wearer faces where the diver's crown points, of a swimmer, or the chest, of one upright.
+// The wearer begins facing where the diver's crown points, of a swimmer, or the chest, of one
+// upright.
 Pose Wearer::world_from_stage(const scene::MotionSource& motion, double time_s) {
   scene::Mount hips;
   hips.object = static_cast<int>(human().object);
   const Pose body = motion.world_from(hips, time_s);
   world_from_body_ = body;
-  const Vec3 ahead = body.rotation * Vec3(0, 1, -1);
-  return {body * eyes_m_, from_yaw_pitch_roll(std::atan2(-ahead.x, -ahead.z), 0.0, 0.0)};
+  const double course_rad = course_of(body.rotation, followed_rad_);
+  if (!followed_s_ || time_s < *followed_s_) {
+    followed_rad_ = course_rad;
+    added_rad_ = 0.0;
+  } else if (!swims_ || by_keys_) {
+    const double off = off_rad(course_rad, followed_rad_), passed_s = time_s - *followed_s_;
+    const double beyond = std::copysign(std::max(std::abs(off) - kSway_rad, 0.0), off);
+    const double most = kMostStageTurn_rad_s * passed_s;
+    followed_rad_ += std::clamp(beyond * -std::expm1(-passed_s / kStageFollow_s), -most, most);
+  }
+  followed_s_ = time_s;
+  return {body * eyes_m_, from_yaw_pitch_roll(followed_rad_ + added_rad_, 0.0, 0.0)};
 }
 
 void Wearer::take(const xr::DisplayFrame& frame, const DiveInput& input,
-                  const std::optional<Quat>& world_from_eyes, double speed) {
+                  const std::optional<Quat>& world_from_eyes, double speed, double elapsed_s) {
   world_from_head_ = frame.world_from_head;
+  if (world_from_head_)
+    added_rad_ -= std::clamp(input.look_rate.x + input.turn, -1.0, 1.0) * kStageTurn_rad_s *
+                  std::min(elapsed_s, kLongestStageTurn_s);
   tracked_ = frame.tracked;
   input_ = input;
   world_from_eyes_ = world_from_head_ || !by_keys_ ? std::nullopt : world_from_eyes;
@@ -102,6 +127,13 @@ bool Wearer::begins_by_keys() const {
   return by_keys_ && (moves || turns || !human().waypoints_ned_m.empty());
 }
 
+// A turn alone leaves a diver to the plan that he follows.
+bool Wearer::begins_by_sticks() const {
+  const bool turns = std::abs(input_.look_rate.x + input_.turn) > kPush;
+  return world_from_head_ &&
+         (glm::length(input_.move) > kPush || (turns && human().waypoints_ned_m.empty()));
+}
+
 void Wearer::begin_swimming(double scene_time_s) {
   swims_ = true;
   began_by_keys_ = by_keys_;
@@ -148,7 +180,7 @@ Status Wearer::poll(SampleInbox& inbox, double scene_time_s) {
     let_go(inbox, DiverGroup::kGaze);
   if (ends)
     let_go(inbox);
-  else if (!swims_ && (begins_by_keys() || (world_from_head_ && glm::length(input_.move) > kPush)))
+  else if (!swims_ && (begins_by_keys() || begins_by_sticks()))
     begin_swimming(scene_time_s);
   if (input_.jacket != 0 && !swims_) {
     claim(inbox, DiverGroup::kButtons);
@@ -195,6 +227,22 @@ std::optional<diver::SwimGoal> Wearer::pushed() const {
                          share * (input_.fast ? kFast_m_s : kSpeed_m_s)};
 }
 
+// In a curve towards where the head looks, once that is too far aside.
+std::optional<diver::SwimGoal> Wearer::turned() {
+  if (!world_from_head_) return std::nullopt;
+  const Vec3 starboard = world_from_head_->rotation * Vec3(1, 0, 0);
+  const double looks_rad = std::atan2(-starboard.z, starboard.x);
+  const double course_rad =
+      course_of(diver::standing_pose(Vec3(0.0), state().human.root.attitude).rotation, looks_rad);
+  const double off = off_rad(looks_rad, course_rad);
+  turns_body_ = std::abs(off) > (turns_body_ ? kAhead_rad : kNeck_rad);
+  if (!turns_body_) return std::nullopt;
+  const double yaw_rad = course_rad + std::clamp(off, -kTurn_rad, kTurn_rad);
+  const Vec3 push = from_yaw_pitch_roll(yaw_rad, 0.0, 0.0) * Vec3(0.0, 0.0, -kAhead_m);
+  return diver::SwimGoal{state().human.root.position_ned_m + diver::ned_from_world(push),
+                         kTurningShare * kSpeed_m_s};
+}
+
 // Ahead, up and down along the course, which the other keys turn. Without a key he stays there.
 // Where his own view is shown, those keys turn the view (ViewChoice), and ahead is where it points.
 diver::SwimGoal Wearer::pushed_by_keys() {
@@ -225,8 +273,9 @@ void Wearer::swim(SampleInbox& inbox, double scene_time_s) {
   if (!(dt_s > 0.0)) return;
   swum_s_ = scene_time_s;
   const diver::HumanState& body = state().human;
-  const diver::SwimGoal goal =
-      by_keys_ ? pushed_by_keys() : pushed().value_or(diver::SwimGoal{stays_ned_m_, 0.0});
+  std::optional<diver::SwimGoal> pushed_to = by_keys_ ? pushed_by_keys() : pushed();
+  if (!pushed_to) pushed_to = turned();
+  const diver::SwimGoal goal = pushed_to.value_or(diver::SwimGoal{stays_ned_m_, 0.0});
   if (goal.speed_m_s > 0.0) stays_ned_m_ = body.root.position_ned_m;
   diver::HumanInputs limbs;
   diver::swim(human().body, human().file.swimmer, goal, body, swimmer_, dt_s, limbs);

@@ -1,7 +1,8 @@
 // A person as the scene's first diver: head, hands, gaze and swimming of a headset's wearer, and
 // in a window the jacket's buttons, swimming by keys and where the view points, become samples of
 // the source "wearer", as those of any other device. The stage goes with the diver's body, level,
-// so that the wearer's eyes are the diver's. Rendering thread.
+// so that the wearer's eyes are the diver's; it turns by the wearer's stick, and with a body that
+// turns off it, but not with its strokes. Rendering thread.
 #pragma once
 
 #include <optional>
@@ -28,9 +29,12 @@ class Wearer final : public SampleSource {
   // The wearer's acts in this frame; frame.world_from_head tells whether he is tracked.
   // world_from_eyes: in a window, the view out of the eyes of the diver whom the keys swim: the
   // gaze is where its middle points, and ahead is there. Nothing: another view is shown. speed:
-  // seconds of the scene in one of the host.
+  // seconds of the scene in one of the host. elapsed_s: since the frame before.
   void take(const xr::DisplayFrame& frame, const DiveInput& input,
-            const std::optional<Quat>& world_from_eyes = {}, double speed = 1.0);
+            const std::optional<Quat>& world_from_eyes = {}, double speed = 1.0,
+            double elapsed_s = 0.0);
+  // The stage faces where the body does.
+  void face_ahead() { followed_s_.reset(); }
   // Without a headset: the keys swim the diver from now on, or no longer. Ahead is where he swims,
   // or where his own view points.
   void swim_by_keys(bool on);
@@ -46,8 +50,10 @@ class Wearer final : public SampleSource {
   void let_go(SampleInbox& inbox);
   void let_go(SampleInbox& inbox, DiverGroup group);
   bool begins_by_keys() const;
+  bool begins_by_sticks() const;
   void begin_swimming(double scene_time_s);
   std::optional<diver::SwimGoal> pushed() const;
+  std::optional<diver::SwimGoal> turned();
   diver::SwimGoal pushed_by_keys();
   Pose riding(const Pose& world_from_tracked) const;
   void swim(SampleInbox& inbox, double scene_time_s);
@@ -61,6 +67,10 @@ class Wearer final : public SampleSource {
   Vec3 eyes_m_;  // of a straight body, in a standing person's axes, from the hips
   std::optional<Pose> world_from_head_;
   std::optional<Pose> world_from_body_;  // the hips when the stage was placed
+  // The stage's yaw: of the body, without its sway, and what the stick added.
+  double followed_rad_ = 0.0, added_rad_ = 0.0;
+  std::optional<double> followed_s_;  // when that of the body was taken
+  bool turns_body_ = false;           // towards where the head looks
   xr::Tracked tracked_;
   DiveInput input_;
   bool fresh_ = false;                                 // those were not sent yet

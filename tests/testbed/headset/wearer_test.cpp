@@ -153,6 +153,71 @@ TEST_F(HeadsetWearer, APushedStickSwimsWhereTheHeadLooks) {
                                          << ahead.x << " " << ahead.y << " " << ahead.z;
 }
 
+double yaw_deg(const Pose& pose) {
+  const Vec3 ahead = pose.rotation * Vec3(0, 0, -1);
+  return degrees(std::atan2(-ahead.x, -ahead.z));
+}
+double apart_deg(double a_deg, double b_deg) {
+  return std::abs(std::remainder(a_deg - b_deg, 360.0));
+}
+
+// North for 16 m, then east: strokes sway the body by some 10 degrees, the turn is one of 90.
+TEST(WearerStage, DoesNotSwayWithStrokesAndComesSlowlyWithATurn) {
+  const scene::Scene scene =
+      dive_of(kStillWater + diver_text(std::string("position_m = [0, -12, 0]\n") + kProne +
+                                       "swim = { waypoints_m = [[0, -12, -16], [20, -12, -16]], "
+                                       "speed_m_s = 0.45 }\n"))
+          .scene;
+  NERITIC_ASSERT_OK(const auto physics, LivePhysics::create(scene, LivePhysics::Pace::kPicture));
+  Wearer wearer(*physics);
+  constexpr double kFrame_s = 0.02;
+  double last_deg = 0.0, fastest_deg_s = 0.0, swayed_deg = 0.0, course_deg = 0.0, sway_deg = 0.0;
+  for (double time_s = 0.0; time_s < 75.0; time_s += kFrame_s) {
+    physics->reach(time_s);
+    const double stage_deg = yaw_deg(wearer.world_from_stage({scene, &physics->motion()}, time_s));
+    course_deg = degrees(course_of(drawn_pose(physics->shown().humans()[0]).rotation));
+    if (time_s > 0.0)
+      fastest_deg_s = std::max(fastest_deg_s, apart_deg(stage_deg, last_deg) / kFrame_s);
+    last_deg = stage_deg;
+    if (time_s > 30.0) continue;
+    swayed_deg = std::max(swayed_deg, apart_deg(stage_deg, 0.0));
+    sway_deg = std::max(sway_deg, apart_deg(course_deg, 0.0));
+  }
+  EXPECT_GT(sway_deg, 3.0);
+  EXPECT_LT(swayed_deg, 0.1);
+  EXPECT_LT(fastest_deg_s, 15.5);
+  EXPECT_LT(apart_deg(course_deg, -90.0), 30.0);
+  EXPECT_LT(apart_deg(last_deg, course_deg), 35.0);
+}
+
+TEST(WearerStage, TurnsByTheStickAndTheBodyComesRound) {
+  const scene::Scene scene = dive_of(hover_text("")).scene;
+  NERITIC_ASSERT_OK(const auto physics, LivePhysics::create(scene, LivePhysics::Pace::kPicture));
+  Wearer wearer(*physics);
+  physics->listen({&wearer});
+  constexpr double kFrame_s = 0.05;
+  double begun_deg = 0.0, turned_deg = 0.0, course_deg = 0.0;
+  for (int frame = 0; frame < 900; ++frame) {
+    const double time_s = frame * kFrame_s;
+    physics->reach(time_s);
+    xr::DisplayFrame seen;
+    seen.world_from_head = wearer.world_from_stage({scene, &physics->motion()}, time_s);
+    if (frame == 20) begun_deg = yaw_deg(*seen.world_from_head);
+    turned_deg = yaw_deg(*seen.world_from_head);
+    course_deg = degrees(course_of(drawn_pose(physics->shown().humans()[0]).rotation));
+    DiveInput input;
+    if (frame >= 20 && frame < 50) input.look_rate.x = 1.0;  // 1.5 s to starboard
+    wearer.take(seen, input, {}, 1.0, kFrame_s);
+  }
+  EXPECT_LT(apart_deg(turned_deg, begun_deg - 90.0), 3.1);
+  EXPECT_LT(apart_deg(course_deg, turned_deg), 80.0);
+  // Ahead again is where the body is.
+  wearer.face_ahead();
+  EXPECT_LT(
+      apart_deg(yaw_deg(wearer.world_from_stage({scene, &physics->motion()}, 45.0)), course_deg),
+      5.0);
+}
+
 // From a metre before the own eyes, looking back: the crown would be nearer than that.
 TEST_F(HeadsetWearer, TheOwnBodyIsSeenWithoutItsHead) {
   const std::string back = fmt::format(
