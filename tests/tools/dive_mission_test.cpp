@@ -201,5 +201,14 @@ TEST_F(DivePhysics, RunsOfDiversEndInTheTableToo) {
   EXPECT_EQ(dive("--headless --runs 2", "still.toml").status, 2);
 }
 
+TEST_F(DivePhysics, ARuntimeThatDoesNotLoadIsNamed) {
+  setenv("XR_RUNTIME_JSON", "/not/there.json", 1);
+  const Outcome outcome = dive("--display openxr --frames 1", "dive.toml");
+  unsetenv("XR_RUNTIME_JSON");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find("XR_RUNTIME_JSON=/not/there.json does not load"), std::string::npos)
+      << outcome.err;
+}
+
 }  // namespace
 }  // namespace neritic

@@ -174,7 +174,7 @@ void OpenXrHeadset::reconnect() {
   retry_at_ns_ = now_ns() + kRetry_ns;
   const Status status = try_again();
   if (status.ok()) {
-    log_info("the headset is back");
+    log_warn("{}: the headset is back, and shows the dive again", info_.runtime);
     told_.clear();
     stumbles_ = 0;
     return;

@@ -222,6 +222,7 @@ std::optional<Pose> Inputs::held_controller(std::size_t side, XrTime at) const {
   return to_pose(location.pose) * kGripFromWrist;
 }
 
+// Nothing while the tracker only infers where the eyes look.
 void Inputs::read_gaze(XrTime at, Tracked& tracked) const {
   if (gaze_ == XR_NULL_HANDLE) return;
   XrActionStateGetInfo get{XR_TYPE_ACTION_STATE_GET_INFO};
@@ -229,10 +230,12 @@ void Inputs::read_gaze(XrTime at, Tracked& tracked) const {
   XrActionStatePose state{XR_TYPE_ACTION_STATE_POSE};
   XrEyeGazeSampleTimeEXT sampled{XR_TYPE_EYE_GAZE_SAMPLE_TIME_EXT};
   XrSpaceLocation location{XR_TYPE_SPACE_LOCATION, &sampled};
+  constexpr XrSpaceLocationFlags kMeasured =
+      XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
   if (XR_FAILED(runtime_.xr().GetActionStatePose(session_.handle(), &get, &state)) ||
       !state.isActive ||
       XR_FAILED(runtime_.xr().LocateSpace(gaze_space_, session_.stage(), at, &location)) ||
-      !(location.locationFlags & XR_SPACE_LOCATION_ORIENTATION_VALID_BIT) || sampled.time <= 0)
+      (location.locationFlags & kMeasured) != kMeasured || sampled.time <= 0)
     return;
   tracked.gaze = {to_pose(location.pose), runtime_.to_host(sampled.time)};
 }

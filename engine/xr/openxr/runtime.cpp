@@ -1,5 +1,6 @@
 #include "engine/xr/openxr/runtime.hpp"
 
+#include <cstdlib>
 #include <cstring>
 #include <sstream>
 
@@ -130,8 +131,14 @@ Result<std::unique_ptr<Runtime>> Runtime::create(const HeadsetOptions& options, 
 
 Status Runtime::create_instance(const Loader& loader, const HeadsetOptions& options) {
   const std::vector<std::string> offered = names_of(loader, nullptr);
-  if (offered.empty())
-    return failure(ErrorCode::kNoDevice, "no OpenXR runtime is active (docs/headsets.md)");
+  if (offered.empty()) {
+    const char* const named = std::getenv("XR_RUNTIME_JSON");
+    return failure(
+        ErrorCode::kNoDevice, "{} (docs/headsets.md)",
+        named && *named
+            ? fmt::format("the OpenXR runtime of XR_RUNTIME_JSON={} does not load", named)
+            : "no OpenXR runtime is active");
+  }
   std::vector<const char*> wanted;
   for (const Known& known : kKnown) {
     // The gaze moves the sharp views of four only.
