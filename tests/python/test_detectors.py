@@ -69,8 +69,10 @@ class Crops(unittest.TestCase):
                 self.assertTrue(places.PLACES[name].format(floor=-10, assets="A").count("[[objects]]") > 0 or name == "open", name)
                 for object_name in re.findall('^name = "(.*)"', places.PLACES[name], re.M):
                     self.assertRegex(object_name, "^[A-Za-z0-9_-]{1,64}$")
+                    self.assertNotIn(object_name, [*crops.CLASSES, "eye", "plant", "rock", *crops.MORE])  # names of one scene
         models = [set(part.split('"')[0] for n in of[k] for part in places.PLACES[n].split("models/")[1:]) for k in ("test", "train", "choose")]
         self.assertFalse(models[0] & (models[1] | models[2]))
+        self.assertFalse(models[0] & {part.split('"')[0] for text in crops.MORE.values() for part in text.split("models/")[1:]})
 
     def test_what_nobody_could_name_is_no_crop(self):
         light = np.tile(np.linspace(60, 120, 64)[:, None, None], (1, 64, 3))
@@ -106,8 +108,37 @@ class Crops(unittest.TestCase):
             self.assertEqual(shown["diver"], {(f"{m}.glb", "", c) for m in ("diver", "diver_grey", "diver_twin") for c in ("swim", "hover", "cruise", "frog")})
 
     def test_a_sonar_has_no_looks_of_a_camera(self):
+        import training
         with self.assertRaisesRegex(Refused, "looks: found places with eye sonar; accepted: learnt"):
             detector.check({"eye": "sonar", "looks": "places", "model": "shipped"})
+        for words in (getattr(sonar_crops, "LOOKS_OF", ()), crops.LOOKS_OF):
+            with self.assertRaisesRegex(Refused, "found \"looks=grey\"; accepted: steps=N.*" + ", ".join(f"looks={w}" for w in words) + "$"):
+                training.settings_of(["looks=grey"], 5, 1, words)
+        self.assertEqual(training.settings_of(["looks=places", "steps=9"], 5, 1, crops.LOOKS_OF), (9, 1, None, None, "places"))
+
+    def test_a_camera_learns_from_equal_parts_of_its_lessons_or_from_those_of_the_asked_looks(self):
+        import training
+        for split, kinds in (("train", crops.LESSONS), ("choose", crops.CHOOSE)):
+            found = training.lessons_of(crops, split, 60)
+            self.assertEqual([found.count(kind) for kind in kinds], [60 * kinds.count(kind) // len(kinds) for kind in kinds])
+            for looks in crops.LOOKS_OF:
+                only = training.lessons_of(crops, split, 60, looks)
+                self.assertEqual((len(only), {words["looks"] for _, words in only}), (60, {looks}))
+        self.assertEqual(training.lessons_of(sonar_crops, "choose", 3), [(training.EACH_CHOOSE, {})] * 3)
+
+    def test_a_scene_gives_up_a_class_that_it_cannot_show_and_else_gives_as_many_as_asked(self):
+        drawn = {"all": 0, "none": 0, "late": 0, "rare": 0}
+
+        def one(name):
+            drawn[name] += 1
+            seen = {"all": True, "none": False, "late": drawn[name] > 6, "rare": drawn[name] % 3 == 1}[name]
+            return (np.full(2, drawn[name]),) if seen else None
+        pictures, classes = crops.some_of(one, list(drawn), (3, 4, 5, 6), patience=6)
+        self.assertEqual((np.bincount(classes).tolist(), drawn), ([3, 0, 0, 6], {"all": 3, "none": 6, "late": 6, "rare": 16}))
+        drawn.update(dict.fromkeys(drawn, 0))
+        pictures, classes = crops.some_of(one, list(drawn), 3, tries=4)
+        self.assertEqual((np.bincount(classes).tolist(), drawn), ([3, 0, 3, 3], {"all": 3, "none": 12, "late": 9, "rare": 7}))
+        self.assertEqual(pictures[:, 0].tolist(), [1, 2, 3, 7, 8, 9, 1, 4, 7])
 
     def test_corners_are_as_dark_as_cos4_of_the_angle_says(self):
         drawn = [np.array([0.3, -0.5]), 0.25]

@@ -23,11 +23,18 @@ LABELS = {"diver": 4, "rov": 5, "shark": 7, "fish": 6}  # the scene's classes
 LENGTHS_M = {"diver": 1.8, "rov": 0.6, "shark": 3.0, "fish": 0.21}
 SIDE = 64
 LEAST_SHARE, LEAST_CONTRAST, MOST_NOISE = 0.03, 7.5, 2.5
-# To learn from: crops of a class, and how the scene is opened, of one half of the scenes and of the other.
-LESSONS = [(20, {"margin": 1.5}), (20, {"margin": 1.5, "wide": True})]
-SCENES, STEPS = 200, 7000  # to learn from; of the training
-RANGES = {"depth_m": (4.0, 25.0), "fov_deg": (14.0, 35.0), "fish_scale": (2.0, 4.0), "fills": (0.35, 1.1), "sight": (0.5, 1.0), "down": 0.2}
-WIDE_RANGES = {"depth_m": (3.0, 30.0), "fov_deg": (12.0, 48.0), "fish_scale": (1.5, 4.5), "fills": (0.3, 1.3), "sight": (0.3, 1.0), "down": 0.3}
+# To learn from, and to choose by: crops of each class, and how the scene is opened, of equal parts of the scenes.
+EACH = (16, 12, 9, 14, 12)
+LESSONS = [(EACH, {"margin": 1.5, "wide": wide, "looks": looks}) for looks in ("learnt", "places", "places") for wide in (False, True)]
+CHOOSE = [(10, {"looks": looks}) for looks in ("learnt", "places")]
+PATIENCE = 8  # draws of a class in a scene to learn from, that give none, until it is given up
+SCENES, STEPS, COOL = 400, 6000, 2500  # to learn from; of the training; of these, in which it ends
+FINE = True  # the network has a further block of its finest maps
+# others: how often something else stands there too, beside a thing and where there is none.
+RANGES = {"depth_m": (4.0, 25.0), "fov_deg": (14.0, 35.0), "fish_scale": (2.0, 4.0), "fills": (0.35, 1.1), "sight": (0.5, 1.0), "down": 0.2,
+          "others": (0.3, 0.6)}
+WIDE_RANGES = {"depth_m": (3.0, 30.0), "fov_deg": (12.0, 48.0), "fish_scale": (1.5, 4.5), "fills": (0.3, 1.3), "sight": (0.3, 1.0), "down": 0.3,
+               "others": (0.35, 0.85)}
 # (model, node, scale that makes it as long as fish.glb). What is drawn of these comes from a generator of its own, APART.
 FISH = [("fish", "", 1.0), ("school_fish", "snapper", 0.77), ("school_fish", "damsel", 1.9)]
 DIVERS, CLIPS = ["diver", "diver_grey", "diver_twin"], ["swim", "hover", "cruise", "frog"]
@@ -35,10 +42,14 @@ APART, LOOKS_OF = 1 << 42, ["learnt", "places"]
 MOST_VIGNETTE, HALF_PICTURE_RAD = 0.3, np.radians([27.5, 40.0])  # the scenes' cameras have 0.25 at most; rows, columns
 FAR = [900.0, 900.0, -40.0]
 ASSETS = os.path.normpath(os.path.join(SHIPPED, ".."))
-# Beside plant and rock, in scenes to learn from: three a scene, of these.
+# Beside plant and rock, in scenes to learn from: three or four a scene, of these.
 MORE = {"turtle": 'model = "{assets}/models/turtle.glb"\nclip = "swim"', "ray": 'model = "{assets}/models/ray.glb"\nclip = "swim"',
         "jellyfish": 'model = "{assets}/models/jellyfish.glb"\nscale = 2',
         "drum": 'model = "{assets}/models/relics.glb"\nnode = "drum"', "anchor": 'model = "{assets}/models/relics.glb"\nnode = "anchor"',
+        "tyre": 'model = "{assets}/models/relics.glb"\nnode = "tyre"', "rope": 'model = "{assets}/models/relics.glb"\nnode = "rope"',
+        "boulder": 'model = "{assets}/models/rocks.glb"\nnode = "rock_1"\nscale = 0.5',
+        "stone": 'model = "{assets}/models/rocks.glb"\nnode = "rock_2"\nscale = 0.4',
+        "tuft": 'model = "{assets}/models/eelgrass.glb"\nscale = 1.5', "frond": 'model = "{assets}/models/giant_kelp.glb"\nscale = 0.2',
         "box": 'shape = "box"\nsize_m = [0.7, 0.35, 0.5]\ncolor = [{tint:.2f}, {tint:.2f}, 0.2]',
         "post": 'shape = "cylinder"\nradius_m = 0.12\nheight_m = 2.2\ncolor = [{tint:.2f}, 0.3, {tint:.2f}]',
         "buoy": 'shape = "sphere"\nradius_m = 0.3\ncolor = [0.6, {tint:.2f}, 0.1]'}
@@ -187,7 +198,7 @@ class Maker:
             off = rng.normal(0.0, 0.10, 2).clip(-0.25, 0.25) * self.fov * far
             poses[name] = (eye + far * ahead + off[0] * left + off[1] * up, self._pose(name))
         for others in range(3 if self.varied else 1):
-            if rng.random() >= (0.3 if name != "nothing" else 0.6) * (1.0, 0.6, 0.4)[others]:
+            if rng.random() >= self.ranges["others"][name == "nothing"] * (1.0, 0.6, 0.4)[others]:
                 break
             near, hides = far * rng.uniform(0.4, 0.8), str(rng.choice(self.hides))
             if others:  # anywhere, also behind
@@ -227,13 +238,14 @@ class Maker:
         return some_of(one, CLASSES, each)
 
 
-def some_of(one, names, each, tries=4):
-    """(first parts of what one(name) gives, classes [n]): this number of each class, fewer where they cannot be seen."""
+def some_of(one, names, each, tries=4, patience=None):
+    """(first parts of what one(name) gives, classes [n]): this number of each class (or one number a class), fewer where they
+    cannot be seen. patience: draws after which a class that gave none yet is given up, as too large or faint for this scene."""
     found, classes = [], []
     for index, name in enumerate(names):
-        made = 0
-        for _ in range(tries * each):
-            if made == each:
+        made, asked = 0, each if isinstance(each, int) else each[index]
+        for drawn in range(tries * asked):
+            if made == asked or (made == 0 and drawn == patience):
                 break
             given = one(name)
             if given is not None:

@@ -5,9 +5,10 @@ Crops come from --runs scenes of the split "train" and are varied anew in each p
 the split "choose", in places that training has not, choose the temperature that makes the shares true
 (Guo et al. 2017). Scenes of the split "test" are never opened here. DIR gets NAME.onnx, NAME.json.
 
---set steps=N, --set draw=N (the seed of weights and variations, where it is not --seed), --set from=FILE.onnx, weights of
-such a file to go on from, more slowly, and --set with=FILE.onnx, a network that looks too: DIR gets it as NAME_with, and the
-mean of both becomes as sure as it is right.
+--set steps=N, --set draw=N (the seed of weights and variations, where it is not --seed), --set looks=WORD (of a camera alone:
+scenes of these looks only, where both are learned from otherwise), --set from=FILE.onnx, weights of such a file to go on from,
+more slowly, and --set with=FILE.onnx, a network that looks too: DIR gets it as NAME_with, and the mean of both becomes as sure
+as it is right.
 """
 import concurrent.futures
 import concurrent.futures.process
@@ -30,7 +31,8 @@ from scenario import Failed, Refused
 
 EACH, EACH_CHOOSE = 12, 10  # crops of a class and a scene, where the maker's LESSONS name no other
 BATCH, THREADS = 64, 1
-MOST_RATE, MORE_RATE, COOL = 3e-3, 1e-3, 800  # from the beginning, and from weights of a file; steps in which it ends
+MOST_RATE, MORE_RATE = 3e-3, 1e-3  # from the beginning, and from weights of a file
+COOL = 800  # steps in which it ends, where the maker names no other
 KEPT = 0.99  # of the averaged weights at each step
 LEAST_SCENES = 10
 
@@ -43,23 +45,25 @@ def _scene(name, program, split, seed, each, opened):
         try:
             made = maker.Maker(tools, split, seed, **opened)
             lesson = getattr(made, "lesson", made.one) if split == "train" else made.one
-            found = some_of(lesson, maker.CLASSES, each)
+            found = some_of(lesson, maker.CLASSES, each, patience=getattr(maker, "PATIENCE", None) if split == "train" else None)
             made.close()
         except Exception as error:  # of a class that the parent process may not know
             raise Failed(f"scene {seed} of {split}: {error}") from None
     return found
 
 
-def lessons_of(maker, split, scenes):
-    """(crops of a class, words to the Maker) of each scene: to learn from, as many scenes of each of the maker's LESSONS."""
-    kinds = getattr(maker, "LESSONS", [(EACH, {})]) if split == "train" else [(EACH_CHOOSE, {})]
+def lessons_of(maker, split, scenes, looks=None):
+    """(crops of a class, words to the Maker) of each scene: as many scenes of each of the maker's LESSONS, or of its CHOOSE; looks:
+    of those of these looks alone."""
+    kinds = getattr(maker, "LESSONS", [(EACH, {})]) if split == "train" else getattr(maker, "CHOOSE", [(EACH_CHOOSE, {})])
+    kinds = [(each, words) for each, words in kinds if looks in (None, words.get("looks"))]
     return [kinds[i * len(kinds) // scenes] for i in range(scenes)]
 
 
-def gather(maker, program, split, scenes, seed, workers, told):
+def gather(maker, program, split, scenes, seed, workers, told, looks=None):
     """(pictures, classes) of all scenes, in order. They are not kept: minutes make them again."""
     with concurrent.futures.ProcessPoolExecutor(max(1, workers), initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)) as pool:
-        lessons = lessons_of(maker, split, scenes)
+        lessons = lessons_of(maker, split, scenes, looks)
         waiting = [pool.submit(_scene, maker.__name__, program, split, seed + i, *of) for i, of in enumerate(lessons)]
         out = []
         try:
@@ -75,8 +79,9 @@ def gather(maker, program, split, scenes, seed, workers, told):
     return tuple(np.concatenate([made[i] for made in out]) for i in (0, 1))
 
 
-def network(torch, channels, classes):
-    """A residual network of 320 000 weights (1.3 MB): 64 x 64 to 4 x 4 maps, then the mean and the largest of each map."""
+def network(torch, channels, classes, fine=False):
+    """A residual network of 320 000 weights (1.3 MB): 64 x 64 to 4 x 4 maps, then the mean and the largest of each map. fine: with a
+    residual block of the 16 x 16 maps too, 340 000 weights."""
     nn = torch.nn
 
     def block(a, b, stride, side=3):
@@ -93,8 +98,8 @@ def network(torch, channels, classes):
     class Net(nn.Module):
         def __init__(self):
             super().__init__()
-            self.maps = nn.Sequential(block(channels, 16, 2, 5), block(16, 32, 2), block(32, 64, 2), Residual(64), block(64, 96, 2),
-                                      Residual(96))
+            self.maps = nn.Sequential(block(channels, 16, 2, 5), block(16, 32, 2), *([Residual(32)] if fine else []),
+                                      block(32, 64, 2), Residual(64), block(64, 96, 2), Residual(96))
             self.mean, self.most, self.drop = nn.AvgPool2d(4), nn.MaxPool2d(4), nn.Dropout(0.2)
             self.last = nn.Linear(192, classes)
 
@@ -109,18 +114,19 @@ def _blobs(pictures):
     return np.stack([looking.normalised(p).transpose(2, 0, 1) for p in pictures])
 
 
-def settings_of(sets, steps, seed):
-    """(steps, draw, from or None, with or None) of --set."""
-    numbers, files = {"steps": steps, "draw": seed}, {"from": None, "with": None}
+def settings_of(sets, steps, seed, looks=()):
+    """(steps, draw, from or None, with or None, looks or None) of --set. looks: the words for these that there are."""
+    numbers, files = {"steps": steps, "draw": seed}, {"from": None, "with": None, "looks": None}
     for text in sets:
         key, _, value = text.partition("=")
-        if key in files and value:
+        if key in files and (value in looks if key == "looks" else value):
             files[key] = value
         elif key in numbers and value.isascii() and value.isdigit() and (key == "draw" or 1 <= int(value)) and int(value) <= 10 ** 7:
             numbers[key] = int(value)
         else:
-            raise Refused(f"--set: found \"{text}\"; accepted: steps=N, draw=N (whole numbers to 10000000), from=FILE.onnx, with=FILE.onnx")
-    return numbers["steps"], numbers["draw"], files["from"], files["with"]
+            raise Refused(f"--set: found \"{text}\"; accepted: steps=N, draw=N (whole numbers to 10000000), from=FILE.onnx, with=FILE.onnx"
+                          + "".join(f", looks={word}" for word in looks))
+    return numbers["steps"], numbers["draw"], files["from"], files["with"], files["looks"]
 
 
 def _read(torch, path, classes):
@@ -141,18 +147,19 @@ def train(name, maker, classes, channels, program, scenes, seed, workers, out, q
     scenes = maker.SCENES if scenes is None else scenes
     if scenes < LEAST_SCENES:
         raise Refused(f"--runs: found {scenes}; accepted: {LEAST_SCENES} scenes or more, to learn from")
-    steps, draw, start, beside = settings_of(sets, maker.STEPS, seed)
+    steps, draw, start, beside, only = settings_of(sets, maker.STEPS, seed, getattr(maker, "LOOKS_OF", ()))
     begun, before = _read(torch, start, classes) if start else (None, {})
     other, others = _read(torch, beside, classes) if beside else (None, {})
     if other and (others.get("with") or not others.get("mirror")):
         raise Refused(f"--set with={beside}: found with {others.get('with', [])}, mirror {others.get('mirror', False)}; accepted: a "
                       "network that looks alone, both ways round")
-    x, y = gather(maker, program, "train", scenes, 1000 * seed, workers, not quiet)
-    xv, yv = gather(maker, program, "choose", max(3, scenes // 10), 1000 * seed, workers, not quiet)
+    x, y = gather(maker, program, "train", scenes, 1000 * seed, workers, not quiet, only)
+    xv, yv = gather(maker, program, "choose", max(3, scenes // 10), 1000 * seed, workers, not quiet, only)
     looks = getattr(maker, "LOOKS", 1)
     if not quiet:
         print(f"{len(y)} crops to learn from, {len(yv)} to choose by: {np.bincount(y, minlength=len(classes)).tolist()}", flush=True)
-    net, best, power = fit(torch, _apart(x, y, looks), _apart(xv, yv, looks), channels, classes, steps, draw, quiet, begun, looks, other)
+    net, best, power = fit(torch, _apart(x, y, looks), _apart(xv, yv, looks), channels, classes, steps, draw, quiet, begun, looks, other,
+                           getattr(maker, "FINE", False), getattr(maker, "COOL", COOL))
     bare = [s.split("=", 1)[0] + "=" + os.path.basename(s.split("=", 1)[1]) for s in sets]  # files without their folders
     made_by = " ".join([f"neritic experiment train_{name} --runs {scenes} --seed {seed}", *(f"--set {s}" for s in bare)])
     about = {"kind": "classifier", "classes": classes, "side": 64, "channels": channels, "normalise": "crop", "mirror": True,
@@ -170,16 +177,16 @@ def _apart(pictures, classes, looks):
     return (pictures.reshape(-1, *pictures.shape[2:]), np.repeat(classes, looks)) if looks > 1 else (pictures, classes)
 
 
-def fit(torch, lessons, chosen_by, channels, classes, steps, seed, quiet, start=None, looks=1, other=None):
-    """start: a network to go on from. other: one that looks too. Returns (network of calibrated logits, share of the crops to
+def fit(torch, lessons, chosen_by, channels, classes, steps, seed, quiet, start=None, looks=1, other=None, fine=False, cool=COOL):
+    """start: a network to go on from. other: one that looks too. cool: steps in which it ends. Returns (network of calibrated logits, share of the crops to
     choose by that they name rightly by so many looks, the power that makes their mean as sure as it is right)."""
     torch.manual_seed(seed)
     torch.set_num_threads(THREADS)
     torch.use_deterministic_algorithms(True)
     most = MORE_RATE if start else MOST_RATE
-    net = (start or network(torch, channels, len(classes))).to(memory_format=torch.channels_last)
+    net = (start or network(torch, channels, len(classes), fine)).to(memory_format=torch.channels_last)
     seen = torch.tensor(_blobs(chosen_by[0])).to(memory_format=torch.channels_last), torch.tensor(chosen_by[1])
-    _learn(torch, net, variations.of(torch, *lessons, seed), seen, steps, most, quiet)
+    _learn(torch, net, variations.of(torch, *lessons, seed), seen, steps, most, quiet, cool)
     logits = _logits(torch, net, seen[0])
     temperature = _temperature(torch, logits, seen[1])
     with torch.no_grad():  # into the last layer, so that the file's shares are calibrated
@@ -192,12 +199,12 @@ def fit(torch, lessons, chosen_by, channels, classes, steps, seed, quiet, start=
     return net, float((shares.argmax(1) == of).float().mean()), 1 / _temperature(torch, shares.log()[None], of)
 
 
-def rate(step, steps, most):
-    """How fast it learns: evenly, after a slow start, and slower and slower over the last COOL steps."""
-    return most * min(1.0, (step + 1) / 100, (steps - step) / min(COOL, steps))
+def rate(step, steps, most, cool):
+    """How fast it learns: evenly, after a slow start, and slower and slower over the last steps."""
+    return most * min(1.0, (step + 1) / 100, (steps - step) / min(cool, steps))
 
 
-def _learn(torch, net, batches, seen, steps, most, quiet):
+def _learn(torch, net, batches, seen, steps, most, quiet, cool):
     """Leaves the average of the last weights in net."""
     optimiser = torch.optim.AdamW(net.parameters(), lr=1e-3, weight_decay=2e-2)
     mean = copy.deepcopy(net)
@@ -209,12 +216,12 @@ def _learn(torch, net, batches, seen, steps, most, quiet):
             x, y = waiting.result()
             waiting = ahead.submit(batches, BATCH)
             for group in optimiser.param_groups:
-                group["lr"] = rate(step, steps, most)
+                group["lr"] = rate(step, steps, most, cool)
             optimiser.zero_grad()
             loss_of(net(x), y).backward()
             optimiser.step()
             _average(torch, mean, net, min(KEPT, (step + 1) / (step + 10)))
-            if not quiet and (step + 1) % 200 == 0:
+            if not quiet and (step + 1) % 500 == 0:
                 share = _right(torch, mean, seen)
                 print(f"step {step + 1} of {steps}: {100 * share:.1f} % of the crops to choose by", flush=True)
     net.load_state_dict(mean.state_dict())

@@ -1,11 +1,13 @@
 """Batches to learn from: each crop turned, scaled, shifted, mirrored, faded, blurred, its exposure and balance of colours changed,
-and made noisy anew; and things of a camera's crops pasted, as faint as they were in their own water or fainter, before what
+its colours mixed as by another water, darker towards a side, and made noisy anew; and things of a camera's crops pasted, as faint as they were in their own water or fainter, before what
 other scenes show behind nothing. Everything is drawn by the seed. A crop whose thing would leave the picture is drawn as it was
 rendered.
 """
 import math
 
 import numpy as np
+
+from crops import falloff
 
 LEAST_CONTRAST = 7.0  # rms of 255 levels between a pasted thing and the light around it, however faint it was drawn
 LEAST_SHARE = 0.025  # of a varied crop that its thing covers
@@ -33,6 +35,7 @@ def _normalised(torch, x):
 
 class _Camera:
     PASTED, MOST_TURN, SCALES, SHIFT = 0.5, 0.4, (0.75, 1.45), 0.22
+    MIXED, MIX, PALEST, DARKER, FALLOFFS = 0.5, 0.1, 0.3, 0.4, 256
 
     def __init__(self, torch, pictures, classes, seed):
         import cv2
@@ -41,6 +44,8 @@ class _Camera:
         self.pictures, self.wide = pictures, pictures.shape[1]
         self.by_class = [np.flatnonzero(classes == k) for k in range(int(classes.max()) + 1)]
         self.noise = self.random.standard_normal(1 << 21, np.float32)  # that each crop has a part of
+        self.falloffs = np.stack([falloff(self.random, SIDE, self.random.uniform(0.2, 0.84)) for _ in range(self.FALLOFFS)])
+        self.falloffs = self.falloffs[..., None].astype(np.float32)
         self.before = None
 
     def batch(self, n):
@@ -58,7 +63,14 @@ class _Camera:
         """By a camera of some exposure, balance of colours and noise."""
         rng = self.random
         levels = 255 * np.linspace(0, 1, 256, dtype=np.float32) ** np.float32(rng.uniform(0.8, 1.25))
-        out = levels[x] * rng.uniform(0.8, 1.25, 3).astype(np.float32)
+        out = levels[x]
+        if rng.random() < self.MIXED:  # paler or richer, and each colour with a little of the others
+            pale = rng.uniform(self.PALEST, 1.3)
+            mix = pale * np.eye(3) + (1 - pale) / 3 + rng.normal(0, self.MIX, (3, 3))
+            out = out @ mix.astype(np.float32)
+        out = out * rng.uniform(0.8, 1.25, 3).astype(np.float32)
+        if rng.random() < self.DARKER:
+            out *= self.falloffs[rng.integers(self.FALLOFFS)]
         first = rng.integers(len(self.noise) - out.size)
         out += np.float32(rng.uniform(0.3, 2.8)) * self.noise[first:first + out.size].reshape(out.shape)
         return np.clip(out, 0, 255, out=out)
