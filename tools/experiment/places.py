@@ -11,6 +11,7 @@ SPLITS = {
     "choose": {"waters": ["IA", "III", "1C"], "places": ["reef"]},
     "test": {"waters": ["IB", "3C"], "places": ["wreck", "garden"]},
 }
+STREWN = ["strewn", "strewn_ridge"]  # to learn from too: bottoms with many small things
 # Jerlov's type: how far things are shown, some three attenuation lengths.
 FARTHEST_M = {"I": 20.0, "IA": 18.0, "IB": 15.0, "II": 12.0, "III": 8.0, "1C": 7.0, "3C": 5.0, "5C": 4.0}
 
@@ -18,6 +19,9 @@ _SAND = ('[[objects]]\nname = "floor"\nclass = "seabed"\nshape = "plane"\nsize_m
          'color_texture = "{assets}/textures/sand_color.jpg"\ntexture_m = 3\n')
 _RIDGE = ('[[objects]]\nname = "floor"\nclass = "seabed"\nterrain = "{assets}/terrain/ridge.npy"\ncell_m = 0.5\n'
           'height_offset_m = {floor}\ncolor_texture = "{assets}/textures/sand_color.jpg"\n')
+_SMALL = (("stones", "rock", "rocks.glb", "rock_1", 30, 0.15, 0.7), ("lumps", "rock", "rocks.glb", "rock_2", 30, 0.15, 0.8),
+          ("fronds", "plant", "kelp.glb", "", 16, 0.1, 0.35), ("grass", "plant", "eelgrass.glb", "", 30, 0.5, 1.4),
+          ("drums", "structure", "relics.glb", "drum", 8, 0.4, 1.0))
 _SEABED = '[[objects]]\nname = "floor"\nclass = "seabed"\nmodel = "{assets}/models/seabed.glb"\nposition_m = [0, {floor}, 0]\n'
 
 
@@ -66,6 +70,8 @@ PLACES = {
     "cave": ('[[objects]]\nname = "walls"\nclass = "rock"\nmodel = "{assets}/models/cave.glb"\nposition_m = [-5, {floor}, -3]\n'
              '[[objects]]\nname = "more_walls"\nclass = "rock"\nmodel = "{assets}/models/cave.glb"\nposition_m = [5, {floor}, 3]\nyaw_deg = 130\n'
              + _SAND),
+    "strewn": _SAND + "".join(_scattered(*of) for of in _SMALL),
+    "strewn_ridge": _RIDGE + "".join(_scattered(*of) for of in _SMALL),
     "reef": (_SAND + "".join(_scattered(n, "coral", "reef.glb", n, c, 0.8, 2.2) for n, c in
                              (("brain", 14), ("table", 10), ("staghorn", 10), ("fan", 12), ("barrel_sponge", 10), ("tube_sponges", 10)))),
     "wreck": (_SEABED + '[[objects]]\nname = "submarine"\nclass = "wreck"\nmodel = "{assets}/models/submarine.glb"\n'
