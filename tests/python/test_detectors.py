@@ -64,6 +64,7 @@ class Crops(unittest.TestCase):
         of = {k: set(v["places"]) for k, v in places.SPLITS.items()}
         of["train"] |= {name for _, words in crops.LESSONS for name in words.get("places", [])}
         self.assertFalse(of["test"] & (of["train"] | of["choose"]) or of["train"] & of["choose"])
+        self.assertLessEqual({w for _, words in crops.LESSONS for w in words.get("waters", [])}, set(places.SPLITS["train"]["waters"]))
         self.assertFalse(set(places.SPLITS["test"]["waters"]) & {w for k in ("train", "choose") for w in places.SPLITS[k]["waters"]})
         for split, names in of.items():
             for name in names:

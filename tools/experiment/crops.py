@@ -14,7 +14,7 @@ import os
 
 import numpy as np
 
-from places import FARTHEST_M, PLACES, SPLITS, STREWN
+from places import CLEAR, FARTHEST_M, PLACES, SPLITS, STREWN
 from rotations import quaternion
 from scenario import SHIPPED
 
@@ -27,10 +27,11 @@ LEAST_SHARE, LEAST_CONTRAST, MOST_NOISE = 0.03, 7.5, 2.5
 EACH = (16, 12, 9, 14, 12)
 LESSONS = [(EACH, {"margin": 1.5, "wide": wide, "looks": looks}) for looks in ("learnt", "places", "places") for wide in (False, True)]
 # Small things on the bottom, near and far, are what a network most often takes for a shark: these scenes have more of nothing.
-LESSONS += [((40, 6, 5, 10, 6), {"margin": 1.5, "wide": True, "looks": "places", "places": STREWN})]
+LESSONS += [((40, 6, 5, 10, 6), {"margin": 1.5, "wide": True, "looks": "places", "places": STREWN}),
+            ((40, 8, 5, 12, 8), {"margin": 1.5, "wide": False, "looks": "places", "places": STREWN, "waters": CLEAR})]
 CHOOSE = [(10, {"looks": looks}) for looks in ("learnt", "places")]
 PATIENCE = 8  # draws of a class in a scene to learn from, that give none, until it is given up
-SCENES, STEPS, COOL = 467, 6000, 2500  # to learn from; of the training; of these, in which it ends
+SCENES, STEPS, COOL = 534, 6000, 3500  # to learn from; of the training; of these, in which it ends
 FINE = True  # the network has a further block of its finest maps
 # others: how often something else stands there too, beside a thing and where there is none.
 RANGES = {"depth_m": (4.0, 25.0), "fov_deg": (14.0, 35.0), "fish_scale": (2.0, 4.0), "fills": (0.35, 1.1), "sight": (0.5, 1.0), "down": 0.2,
@@ -117,13 +118,14 @@ def falloff(random, side, fov):
 
 class Maker:
     """Crops of one seed's scene. tools: as the runner gives them; it belongs to one thread. margin: how much wider than a
-    crop the camera looks, for training to cut crops from. looks: of LOOKS_OF; poses, waters and places are the same with each. places: in place of the split's."""
+    crop the camera looks, for training to cut crops from. looks: of LOOKS_OF; poses, waters and places are the same with each. places, waters: in place of
+    the split's."""
 
-    def __init__(self, tools, split, seed, side=SIDE, margin=1.0, wide=False, looks="learnt", places=None):
+    def __init__(self, tools, split, seed, side=SIDE, margin=1.0, wide=False, looks="learnt", places=None, waters=None):
         first = {"train": 0, "choose": 1 << 41, "test": 1 << 40}[split]
         self.rng = rng = np.random.Generator(np.random.Philox(key=seed + first))
         self.varied, self.ranges = wide, WIDE_RANGES if wide else RANGES
-        self.water = str(rng.choice(SPLITS[split]["waters"]))
+        self.water = str(rng.choice(waters or SPLITS[split]["waters"]))
         self.place = str(rng.choice(places or SPLITS[split]["places"]))
         self.depth, self.fov = rng.uniform(*self.ranges["depth_m"]), math.radians(rng.uniform(*self.ranges["fov_deg"]))
         self.over_floor, self.fish_scale = 6.0 + rng.uniform(0, 2), rng.uniform(*self.ranges["fish_scale"])

@@ -12,6 +12,7 @@ SPLITS = {
     "test": {"waters": ["IB", "3C"], "places": ["wreck", "garden"]},
 }
 STREWN = ["strewn", "strewn_ridge"]  # to learn from too: bottoms with many small things
+CLEAR = ["I", "IA", "II"]  # waters of "train" that show these far away
 # Jerlov's type: how far things are shown, some three attenuation lengths.
 FARTHEST_M = {"I": 20.0, "IA": 18.0, "IB": 15.0, "II": 12.0, "III": 8.0, "1C": 7.0, "3C": 5.0, "5C": 4.0}
 
