@@ -21,6 +21,7 @@ struct Beat {
   double time_s = 0.0;     // of the R wave, from the first sample
   double amplitude = 0.0;  // against the mean around it, in the ECG's unit; below 0: upside down
   bool after_gap = false;  // no interval leads to it: the signal was lost in between
+  double jitter_s = 0.0;   // standard deviation of time_s by the noise around it
 };
 
 struct EcgCounts {
@@ -78,6 +79,12 @@ class BeatDetector {
   void look_back(std::int64_t at, std::vector<Beat>& out);
   void accept(const Peak& peak, double share, std::vector<Beat>& out);
   Beat locate(const Peak& peak) const;
+  std::int64_t half_top() const;  // places
+  struct Vertex {
+    double at = 0.0, jitter = 0.0;  // places
+  };
+  Vertex vertex_near(std::int64_t top, std::int64_t near, std::int64_t reach, double sign) const;
+  double noise_around(std::int64_t at) const;
   void lose_signal();
   double threshold() const { return noise_level_ + 0.25 * (signal_level_ - noise_level_); }
   double quietest_since_last_beat(std::int64_t at) const;

@@ -68,7 +68,7 @@ void HeartMonitor::push(std::span<const double> samples) {
     missing_share_ += (missed - missing_share_) / (kMissing_s * rate_hz_);
     for (const Beat& beat : found_) {
       downward_ = downward_ << 1 | (beat.amplitude < 0.0 ? 1u : 0u);
-      Interval interval = judge_.take(beat.time_s, beat.after_gap);
+      Interval interval = judge_.take(beat);
       interval.doubtful = judged() == SignalQuality::kPoor;
       take(interval);
     }
@@ -158,6 +158,7 @@ bool HeartMonitor::doubtful() const {
 void HeartMonitor::take(const Interval& interval) {
   if (intervals_.size() == kMostIntervals) intervals_.erase(intervals_.begin());
   intervals_.push_back(interval);
+  state_.ectopic += static_cast<std::uint64_t>(judge_.settle(intervals_));
   if (interval.kind != IntervalKind::kNone || detector_) {
     ++state_.beats;
     state_.last_beat_s = interval.end_s;
@@ -179,10 +180,11 @@ void HeartMonitor::forget() {
 
 HeartState HeartMonitor::state() const {
   HeartState state = state_;
-  if (doubtful())
+  const Variability figures = variability(intervals_);
+  if (doubtful() || noise_hides(intervals_, figures))
     state.spectrum = {};
   else
-    state.over_five_minutes = variability(intervals_);
+    state.over_five_minutes = figures;
   std::vector<double> last_s;
   for (auto i = intervals_.rbegin(); i != intervals_.rend() && last_s.size() < kRateOver; ++i) {
     if (i->kind == IntervalKind::kNone) break;  // what lies before a gap is old

@@ -25,7 +25,7 @@ struct HeartState {
   // By the median of the last four normal intervals; 0: none, stale, or of a poor signal.
   double rate_bpm = 0.0;
   // Without intervals, and no valid spectrum, where the signal is poor or was for more than
-  // kMostDoubtful of the intervals.
+  // kMostDoubtful of the intervals, and where noise moves the beats by too much (noise_hides).
   Variability over_five_minutes;
   HeartSpectrum spectrum;
   SignalQuality quality = SignalQuality::kNone;

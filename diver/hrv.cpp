@@ -11,6 +11,8 @@ namespace {
 constexpr double kNn50_ms = 50.0;
 // So many odd intervals in a row are no extra beats: the rhythm has changed.
 constexpr int kNewRhythm = 5;
+// The least intervals that have a median worth the name.
+constexpr int kKnown = 3;
 constexpr double kPiece_s = 300.0, kLeastPiece_s = 120.0;
 constexpr double kVlf_hz = 0.0033, kLf_hz = 0.04, kHf_hz = 0.15, kEnd_hz = 0.4;
 // Frequencies to the resolution 1 / T of a piece.
@@ -82,8 +84,8 @@ IntervalKind IntervalJudge::kind_of(double length_s) {
     after_ectopic_ = false;
     return IntervalKind::kNormal;
   };
-  // Three are the least that have a median worth the name.
-  if (normal_count_ < 3) return remember();
+  settles_ = normal_count_ == kKnown - 1;
+  if (normal_count_ < kKnown) return remember();
   auto sorted = normal_s_;
   const auto middle = sorted.begin() + normal_count_ / 2;
   std::nth_element(sorted.begin(), middle, sorted.begin() + normal_count_);
@@ -109,14 +111,54 @@ IntervalKind IntervalJudge::kind_of(double length_s) {
   return IntervalKind::kEctopic;
 }
 
-Interval IntervalJudge::take(double time_s, bool after_gap) {
-  const double length_s = time_s - last_s_;
-  const bool none = !has_last_ || after_gap || !(length_s > 0.0);
-  last_s_ = time_s;
+// Of an R wave that is less than half as high as usual, noise was taken for it: it may be anywhere
+// in the detector's window of 150 ms.
+double IntervalJudge::jitter_of(const Beat& beat) {
+  constexpr double kNoise = 0.5, kAnywhere_s = 0.150 / 3.4641016151377544;  // sqrt(12)
+  const double size = std::abs(beat.amplitude);
+  auto sorted = sizes_;
+  const auto middle = sorted.begin() + size_count_ / 2;
+  std::nth_element(sorted.begin(), middle, sorted.begin() + size_count_);
+  const bool small = size_count_ == static_cast<int>(sizes_.size()) && size < kNoise * *middle;
+  if (size_count_ == static_cast<int>(sizes_.size()))
+    std::ranges::move(sizes_.begin() + 1, sizes_.end(), sizes_.begin());
+  else
+    ++size_count_;
+  sizes_[static_cast<std::size_t>(size_count_ - 1)] = size;
+  return small ? std::max(kAnywhere_s, beat.jitter_s) : beat.jitter_s;
+}
+
+int IntervalJudge::settle(std::span<Interval> intervals) {
+  if (!settles_) return 0;
+  settles_ = false;
+  std::array<Interval*, kKnown> first{};
+  int found = 0;
+  for (auto i = intervals.rbegin(); i != intervals.rend() && found < kKnown; ++i)
+    if (i->kind == IntervalKind::kNormal) first[static_cast<std::size_t>(found++)] = &*i;
+  if (found < kKnown) return 0;
+  std::ranges::sort(first, {}, [](const Interval* i) { return i->length_s; });
+  const double usual_s = first[kKnown / 2]->length_s;
+  int changed = 0;
+  for (Interval* i : first)
+    if (std::abs(i->length_s - usual_s) > kEctopicShare * usual_s) {
+      i->kind = IntervalKind::kEctopic;
+      ++changed;
+    }
+  return changed;
+}
+
+Interval IntervalJudge::take(const Beat& beat) {
+  const double length_s = beat.time_s - last_s_, jitter_s = jitter_of(beat);
+  const bool none = !has_last_ || beat.after_gap || !(length_s > 0.0);
+  const double both_s = std::hypot(jitter_s, last_jitter_s_);
+  last_s_ = beat.time_s;
+  last_jitter_s_ = jitter_s;
   has_last_ = true;
-  if (!none) return {time_s, length_s, kind_of(length_s)};
+  if (!none)
+    return {
+        .end_s = beat.time_s, .length_s = length_s, .kind = kind_of(length_s), .jitter_s = both_s};
   after_ectopic_ = false;
-  return {time_s, 0.0, IntervalKind::kNone};
+  return {.end_s = beat.time_s};
 }
 
 Interval IntervalJudge::take_interval(double end_s, double length_s) {
@@ -128,7 +170,10 @@ Interval IntervalJudge::take_interval(double end_s, double length_s) {
 std::vector<Interval> intervals_of(std::span<const Beat> beats) {
   IntervalJudge judge;
   std::vector<Interval> out;
-  for (const Beat& beat : beats) out.push_back(judge.take(beat.time_s, beat.after_gap));
+  for (const Beat& beat : beats) {
+    out.push_back(judge.take(beat));
+    judge.settle(out);
+  }
   return out;
 }
 
@@ -166,6 +211,24 @@ Variability variability(std::span<const Interval> intervals, bool across_gaps) {
   out.sd1_ms = deviation(differences) / std::sqrt(2.0);
   out.sd2_ms = deviation(sums) / std::sqrt(2.0);
   return out;
+}
+
+double beat_jitter_s(std::span<const Interval> intervals) {
+  double squares = 0.0;
+  int count = 0;
+  for (const Interval& i : intervals) {
+    if (i.kind != IntervalKind::kNormal) continue;
+    squares += i.jitter_s * i.jitter_s;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(0.5 * squares / count) : 0.0;
+}
+
+bool noise_hides(std::span<const Interval> intervals, const Variability& figures) {
+  const double jitter_ms = 1e3 * beat_jitter_s(intervals), square = jitter_ms * jitter_ms;
+  return 2.0 * square > kMostNoiseShare * figures.sdnn_ms * figures.sdnn_ms ||
+         (figures.pairs > 0 &&
+          6.0 * square > kMostNoiseShare * figures.rmssd_ms * figures.rmssd_ms);
 }
 
 HeartSpectrum heart_spectrum(std::span<const Interval> intervals) {

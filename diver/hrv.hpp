@@ -22,6 +22,7 @@ struct Interval {
   double length_s = 0.0;  // 0 of kNone
   IntervalKind kind = IntervalKind::kNone;
   bool doubtful = false;  // its beat was found in a poor signal (HeartMonitor)
+  double jitter_s = 0.0;  // deviation of length_s by noise in the ECG; 0: measured by a device
 };
 
 // An interval that is so far from the median of the normal ones before (share of it) ends in an
@@ -32,8 +33,11 @@ inline constexpr double kEctopicShare = 0.15;
 // Classifies intervals one by one. Bounded memory. One owner, one thread.
 class IntervalJudge {
  public:
-  // The beat at time_s; after_gap: no interval leads to it.
-  Interval take(double time_s, bool after_gap);
+  Interval take(const Beat& beat);
+  // Until three intervals are known each counts as normal: once they are, those that are far from
+  // their median are ectopic after all. For the intervals that the judge gave, the newest last,
+  // after each. Returns their number.
+  int settle(std::span<Interval> intervals);
   // An interval that a device measured itself (a heart strap's RR).
   Interval take_interval(double end_s, double length_s);
 
@@ -41,7 +45,12 @@ class IntervalJudge {
   IntervalKind kind_of(double length_s);
   std::array<double, 9> normal_s_{};  // the last ones
   int normal_count_ = 0, odd_in_a_row_ = 0;
-  double last_s_ = 0.0;
+  bool settles_ = false;  // the newest is the third of a rhythm
+  double jitter_of(const Beat& beat);
+
+  std::array<double, 9> sizes_{};  // of the last beats' R waves
+  int size_count_ = 0;
+  double last_s_ = 0.0, last_jitter_s_ = 0.0;
   bool has_last_ = false, after_ectopic_ = false;
 };
 std::vector<Interval> intervals_of(std::span<const Beat> beats);
@@ -71,6 +80,15 @@ struct Variability {
 // Figures of normal intervals alone. Pairs with something between them count only if across_gaps
 // says so. Fewer than two intervals, or pairs: their figures are 0.
 Variability variability(std::span<const Interval> intervals, bool across_gaps = false);
+
+// Noise of the ECG moves each beat's time by a deviation s, so that SDNN^2 grows by 2 s^2, and
+// RMSSD^2, of differences of intervals that share a beat, by 6 s^2. Where that is more than this
+// share of the figures' squares, they tell too much of the noise; below, they are at most 12 % too
+// large.
+inline constexpr double kMostNoiseShare = 0.2;
+// s, of the normal intervals' beats, in seconds; 0 of intervals that a device measured.
+double beat_jitter_s(std::span<const Interval> intervals);
+bool noise_hides(std::span<const Interval> intervals, const Variability& figures);
 
 // Power by frequency: VLF 0.0033 to 0.04 Hz, LF to 0.15, HF to 0.4 (Task Force 1996).
 struct HeartSpectrum {

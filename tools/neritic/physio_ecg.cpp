@@ -76,7 +76,7 @@ ReportText report_text(const PhysioFlags& flags, const EcgReport& r) {
       flags.file, r.ecg.channel.empty() ? "ECG" : r.ecg.channel, r.ecg.rate_hz, r.ecg.seconds(),
       r.refused(), r.counts.leaps, r.ecg.missing, r.counts.gaps, diver::name_of(r.quality()));
   const diver::Variability& v = r.variability;
-  if (!r.figures_known())
+  if (!r.rate_known())
     out += fmt::format(
         "# {} beats, some of them noise: the signal is poor, {:.0f} % of the beats found in noise; "
         "no rate, variability or spectrum is given\n",
@@ -84,6 +84,11 @@ ReportText report_text(const PhysioFlags& flags, const EcgReport& r) {
   else
     out += fmt::format("# {} beats, {} ectopic; mean rate {}, {} at the end\n", r.beats.size(),
                        ectopic, rate_words(v.mean_rate_bpm), rate_words(r.state.rate_bpm));
+  if (r.rate_known() && !r.figures_known())
+    out += fmt::format(
+        "# no variability or spectrum: noise moves each beat by {:.1f} ms, too much beside SDNN "
+        "{:.1f} and RMSSD {:.1f} ms\n",
+        r.jitter_ms(), v.sdnn_ms, v.rmssd_ms);
   if (r.figures_known() && v.pairs > 0)
     out += fmt::format(
         "# {} normal intervals: SDNN {:.1f} ms, RMSSD {:.1f} ms, pNN50 {:.2f} %, SD1 {:.1f} ms, "

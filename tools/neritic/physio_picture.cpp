@@ -101,7 +101,13 @@ json level_data(const BreathReport& r) {
 
 json report_picture(const PhysioFlags& flags, const EcgReport& r) {
   const diver::Variability& v = r.variability;
-  std::string facts = fmt::format("{} beats; signal poor: no figures", r.beats.size());
+  std::string facts =
+      r.rate_known()
+          ? fmt::format(
+                "{} beats, mean {:.1f} bpm; noise moves each by {:.1f} ms: no "
+                "variability; signal {}",
+                r.beats.size(), v.mean_rate_bpm, r.jitter_ms(), diver::name_of(r.quality()))
+          : fmt::format("{} beats; signal poor: no figures", r.beats.size());
   if (r.figures_known())
     facts = fmt::format(
         "{} beats, mean {:.1f} bpm; SDNN {:.1f} ms, RMSSD {:.1f} ms, pNN50 {:.1f} %; signal {}",

@@ -31,12 +31,15 @@ struct EcgReport {
   double us_a_second = 0.0;  // of one core, a second of ECG
   // Rows and samples that say nothing; what is missing between rows is no sample.
   std::uint64_t refused() const { return ecg.refused + counts.refused - ecg.missing; }
-  // The signal is poor if it is so at the end, or was for too many of its beats. Then no figure of
-  // the intervals is given.
+  // The signal is poor if it is so at the end, or was for too many of its beats. Then neither a
+  // rate nor figures of the intervals are given; figures neither where noise moves the beats by too
+  // much beside them.
   diver::SignalQuality quality() const {
     return doubtful_share > diver::kMostDoubtful ? diver::SignalQuality::kPoor : state.quality;
   }
-  bool figures_known() const { return quality() != diver::SignalQuality::kPoor; }
+  bool rate_known() const { return quality() != diver::SignalQuality::kPoor; }
+  double jitter_ms() const { return 1e3 * diver::beat_jitter_s(intervals); }
+  bool figures_known() const { return rate_known() && !diver::noise_hides(intervals, variability); }
 };
 Result<EcgReport> analyse_ecg(const PhysioFlags& flags);
 
