@@ -31,6 +31,11 @@ constexpr double kFirstPeak = 0.85;
 // How far off the next but one breath is looked for, in periods.
 constexpr double kReach = 0.15;
 constexpr double kMostDeviations = 1.5;  // of a level, from its mean
+// How near the rhythm of all bands a period of the envelope is looked for: breaths are not equally
+// long. A half or a double of it lies far beyond.
+constexpr double kNearRhythm = 0.2;
+// The next but one is as far more like a burst than the next where they are halves of a breath.
+constexpr double kMoreAlike = 0.1;
 // How near half of a rate another is half of it.
 constexpr double kHalves = 0.1;
 // The baselines look no lower, as published.
@@ -77,12 +82,14 @@ double correlation(const Levels& levels, std::size_t lag) {
   return size > 0.0 ? ab / size : 0.0;
 }
 
-// Fills rate and confidence by the autocorrelation of the envelope, centred.
-void by_autocorrelation(const Levels& envelope, BreathEstimate& out) {
+// Fills rate and confidence by the autocorrelation of the envelope, centred, from rates between
+// these two.
+void by_autocorrelation(const Levels& envelope, double slowest_hz, double fastest_hz,
+                        BreathEstimate& out) {
   const auto frames = static_cast<int>(envelope.size());
-  const int shortest = static_cast<int>(kBreathFrames_hz / kFastestBreath_hz);
+  const int shortest = static_cast<int>(kBreathFrames_hz / fastest_hz);
   const int last = frames - static_cast<int>(kLeastOverlap_s * kBreathFrames_hz);
-  const int longest = std::min(static_cast<int>(kBreathFrames_hz / kSlowestOfBaselines_hz), last);
+  const int longest = std::min(static_cast<int>(std::ceil(kBreathFrames_hz / slowest_hz)), last);
   // Autocorrelation by lag, computed on demand; NaN: not yet.
   std::vector<double> r(static_cast<std::size_t>(last + 2),
                         std::numeric_limits<double>::quiet_NaN());
@@ -147,7 +154,7 @@ struct WindowEstimate {
 };
 
 void by_rhythm(const std::vector<Levels>& bands, WindowEstimate& out) {
-  const Rhythm rhythm = common_rhythm(bands);
+  const Rhythm rhythm = common_rhythm(bands, out.breath.depth_db / kDecibelsANeper);
   out.breath.rate_bpm = 60.0 * rhythm.rate_hz;
   out.breath.confidence = rhythm.confidence;
   out.asks_for_more = rhythm.slower || rhythm.unsure || rhythm.weak;
@@ -204,8 +211,11 @@ double longest_pause_s(std::span<const BreathFrame> frames, const BreathBands& f
   return longest / kBreathFrames_hz;
 }
 
+// slowest_hz, fastest_hz: between which the autocorrelation looks.
 WindowEstimate estimate_window(std::span<const BreathFrame> frames, const BreathBands& front,
-                               BreathEstimator estimator, double least_confidence) {
+                               BreathEstimator estimator, double least_confidence,
+                               double slowest_hz = kSlowestOfBaselines_hz,
+                               double fastest_hz = kFastestBreath_hz) {
   WindowEstimate result;
   BreathEstimate& out = result.breath;
   if (static_cast<double>(frames.size()) < kLeastWindow_s * kBreathFrames_hz) return result;
@@ -228,7 +238,8 @@ WindowEstimate estimate_window(std::span<const BreathFrame> frames, const Breath
   envelope = smoothed(envelope);
   center(envelope);
   if (estimator == BreathEstimator::kSpectrum) by_spectrum(envelope, out);
-  if (estimator == BreathEstimator::kAutocorrelation) by_autocorrelation(envelope, out);
+  if (estimator == BreathEstimator::kAutocorrelation)
+    by_autocorrelation(envelope, slowest_hz, fastest_hz, out);
   if (estimator == BreathEstimator::kMultiBand) by_rhythm(bands, result);
   const bool missed = estimator != BreathEstimator::kSpectrum &&
                       longest_pause_s(frames, front) * out.rate_bpm / 60.0 >= kMostPause;
@@ -239,6 +250,24 @@ WindowEstimate estimate_window(std::span<const BreathFrame> frames, const Breath
 }
 
 }  // namespace
+
+const char* name_of(BreathQuality quality) {
+  switch (quality) {
+    case BreathQuality::kNone:
+      return "none";
+    case BreathQuality::kPoor:
+      return "poor";
+    case BreathQuality::kGood:
+      return "good";
+  }
+  return "";
+}
+
+BreathQuality quality_of(const BreathEstimate& breath, BreathEstimator estimator) {
+  if (breath.depth_db <= 0.0) return BreathQuality::kNone;
+  const bool told = breath.breathing != 0 && estimator != BreathEstimator::kSpectrum;
+  return told ? BreathQuality::kGood : BreathQuality::kPoor;
+}
 
 const char* name_of(BreathEstimator estimator) {
   switch (estimator) {
@@ -285,10 +314,53 @@ BreathEstimate estimate_breath(std::span<const BreathFrame> frames, const Breath
   return estimate_breath(frames, front, estimator, confidence_asked(estimator));
 }
 
-// Besides: where half of the rate is slower than the window can measure, a history that finds that
-// half is believed; until it lasts 40 s such a rate is none if anything speaks for its half.
+namespace {
+
+// The envelope alone does not tell a breath from its halves, nor one breath from two: it is asked
+// for its period near the rhythm that all bands have, in the window, or where that is too short in
+// the whole history.
+BreathEstimate newest_by_autocorrelation(std::span<const BreathFrame> history, double window_s,
+                                         const BreathBands& front) {
+  using enum BreathEstimator;
+  BreathEstimate rhythm = estimate_newest_breath(history, window_s, front, kMultiBand);
+  rhythm.confidence = std::min(rhythm.confidence, kUnsureConfidence);
+  if (rhythm.breathing == 0) return rhythm;
+  const double hz = rhythm.rate_bpm / 60.0;
+  const auto refused = [&] {
+    rhythm.breathing = 0;
+    rhythm.rate_bpm = 0.0;
+    return rhythm;
+  };
+  // Until two of the slowest breaths are heard, this may be what a half of one repeats.
+  if (hz < 4.0 * kSlowestBreath_hz && history.size() < 2.0 / kSlowestBreath_hz * kBreathFrames_hz)
+    return refused();
+  const auto window = static_cast<std::size_t>(std::lround(window_s * kBreathFrames_hz));
+  const auto heard_near = [&](std::size_t frames, double near_hz) {
+    return estimate_window(history.last(frames), front, kAutocorrelation,
+                           confidence_asked(kAutocorrelation), near_hz / (1.0 + kNearRhythm),
+                           near_hz * (1.0 + kNearRhythm))
+        .breath;
+  };
+  for (const std::size_t frames : {std::min(window, history.size()), history.size()}) {
+    const BreathEstimate near = heard_near(frames, hz);
+    if (near.breathing == 0) continue;
+    // Two breaths on, all is as alike as one breath on, but that breaths are not equally long.
+    const bool halves = heard_near(history.size(), 0.5 * hz).confidence >
+                        heard_near(history.size(), hz).confidence + kMoreAlike;
+    return halves ? refused() : near;
+  }
+  return refused();
+}
+
+}  // namespace
+
+// Of kMultiBand besides: where half of the rate is slower than the window can measure, a history
+// that finds that half is believed; until it lasts 40 s such a rate is none if anything speaks for
+// its half.
 BreathEstimate estimate_newest_breath(std::span<const BreathFrame> history, double window_s,
                                       const BreathBands& front, BreathEstimator estimator) {
+  if (estimator == BreathEstimator::kAutocorrelation)
+    return newest_by_autocorrelation(history, window_s, front);
   const auto window = static_cast<std::size_t>(std::lround(window_s * kBreathFrames_hz));
   const std::size_t heard = std::min(window, history.size());
   const double heard_s = static_cast<double>(heard) / kBreathFrames_hz;

@@ -17,7 +17,8 @@ enum class BreathEstimator : std::uint8_t {
   // The largest line in the spectrum of the envelope, as published. Breathing in and breathing out
   // are both bursts of sound, so it finds twice the rate where they are alike.
   kSpectrum,
-  // The envelope's autocorrelation: the same trap, a finer scale.
+  // The envelope's autocorrelation: the same trap, a finer scale. estimate_newest_breath gives its
+  // rate only near the one of kMultiBand, so that it is never that of halves.
   kAutocorrelation,
   // The line that loudness and colour of all bands share (breath_rhythm.hpp): in and out differ in
   // colour, so that only a whole breath is like the one before. The default.
@@ -45,6 +46,16 @@ struct BreathEstimate {
     field("breathing", self.breathing);
   }
 };
+
+enum class BreathQuality : std::uint8_t {
+  kNone,  // steady sound, or silence
+  // The sound goes up and down, but no rate is sure; or the rate is that of kSpectrum, which may be
+  // twice the breath's.
+  kPoor,
+  kGood,  // a rate is known
+};
+const char* name_of(BreathQuality quality);
+BreathQuality quality_of(const BreathEstimate& breath, BreathEstimator estimator);
 
 // A snapshot's data about the breath (breath_monitor.hpp). Always finite.
 struct BreathState {

@@ -34,8 +34,13 @@ constexpr double kHalfLine = 6.0;
 // Every burst sounds alike if at most this share of their power goes against the loudness: nine in
 // ten made bursts that are alike have up to 0.04, a regulator's hiss and bubbles 0.06 and more.
 constexpr double kOtherSounds = 0.07;
+constexpr double kNarrow = 0.36, kNarrowANeper = 0.15;
 // Fewer turns are no rhythm that is sure.
 constexpr double kLeastTurns = 1.9;
+// A line whose double exceeds it by this factor in power is one by that double alone: of a breath
+// if bursts of the double alternate, else of bursts that are faster than any breath that is
+// measured.
+constexpr double kDoubleAlone = 4.0;
 // Half of a rate may be measured somewhat below the slowest breath.
 constexpr double kNearlySlowest = 0.9;
 // Lines are searched in steps of the window's resolution divided by this number.
@@ -152,11 +157,14 @@ double double_at_top(const Levels& loudness, const Levels& turns) {
   return turned.real() / std::max(std::pow(std::abs(first), 3.0), 1e-300);
 }
 
-// One sound that comes once a turn, so wide that it may as well be half of a breath: a hump that is
-// wider than half of its period has its double's trough at its top.
-bool bursts_are_alike(const std::vector<Levels>& bands, const Levels& turns) {
+// One sound that comes once a turn, so wide that it may as well be half of a breath. A hump has its
+// double at its top if it is narrow, its double's trough if it is wide. A sin^2 hump that fills
+// 0.62 of its period has the share kNarrow - kNarrowANeper times the deviation of the level, which
+// noise makes small as it hides the flanks; halves of a breath fill 0.7 to 0.9 of theirs.
+bool bursts_are_alike(const std::vector<Levels>& bands, double deviation, const Levels& turns) {
   const Bursts bursts = bursts_of(bands, turns);
-  return bursts.others < kOtherSounds && double_at_top(bursts.loudness, turns) < 0.0;
+  return bursts.others < kOtherSounds &&
+         double_at_top(bursts.loudness, turns) < kNarrow - kNarrowANeper * deviation;
 }
 
 // How far the halves of turns differ; infinity: too few turns to say.
@@ -206,7 +214,7 @@ std::vector<double> line_powers(const Levels& x, double step_hz, std::size_t cou
   return power;
 }
 
-Rhythm common_rhythm(const std::vector<Levels>& bands) {
+Rhythm common_rhythm(const std::vector<Levels>& bands, double deviation) {
   const std::vector<Levels> components = components_of(bands);
   if (components.empty()) return {};
   const auto frames = static_cast<double>(bands[0].size());
@@ -232,6 +240,9 @@ Rhythm common_rhythm(const std::vector<Levels>& bands) {
   const double confidence = share_of_arrhythmic_below(at(best), window_s);
   const double top = parabola_top(at(best - 1), at(best), at(best + 1));
   const double line_hz = step_hz * (static_cast<double>(best) + top);
+  if (2.0 * line_hz > kFastestBreath_hz && together[2 * best] > kDoubleAlone * together[best] &&
+      alternation(bands, turns_of(components, 2.0 * line_hz)) < kAlternates)
+    return {};
   const Levels turns = turns_of(components, line_hz);
   const double hz =
       turns.back() < kFewBursts ? line_hz : turns.back() * kBreathFrames_hz / (frames - 1.0);
@@ -244,7 +255,7 @@ Rhythm common_rhythm(const std::vector<Levels>& bands) {
   const bool may_alternate =
       differ > (turns.back() < kFewBursts ? kFewMayAlternate : kMayAlternate);
   Rhythm out{.rate_hz = hz, .confidence = confidence};
-  out.unsure = may_alternate || bursts_are_alike(bands, turns);
+  out.unsure = may_alternate || bursts_are_alike(bands, deviation, turns);
   out.weak = halves_differ(bands, turns) < kHalvesDiffer;
   if (out.unsure) out.confidence = std::min(confidence, kUnsureConfidence);
   const std::size_t slowest_half = line_of(std::max(kSlowestBreath_hz, 1.0 / window_s));

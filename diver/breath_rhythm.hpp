@@ -17,7 +17,7 @@ double parabola_top(double before, double here, double after);
 
 inline constexpr double kUnsureConfidence = 0.8;
 struct Rhythm {
-  double rate_hz = 0.0;     // 0: no line in slowest_breath_hz to kFastestBreath_hz
+  double rate_hz = 0.0;     // 0: none, or faster than kFastestBreath_hz
   double confidence = 0.0;  // the share of sounds without rhythm whose best line is weaker
   // The rate may be twice the breath's, or half of it: bursts sound alike or may alternate. The
   // confidence is kUnsureConfidence at most.
@@ -37,6 +37,7 @@ struct Rhythm {
 // spectra with the most power, half of the power at its double included; its rate, the turns that
 // the sound makes near that line (breath_halves.hpp), since breaths are not equally long. Bursts of
 // which every second one differs make it a breath of half the rate.
-Rhythm common_rhythm(const std::vector<Levels>& bands);
+// deviation: that of the liveliest band before it was scaled, nepers of power.
+Rhythm common_rhythm(const std::vector<Levels>& bands, double deviation);
 
 }  // namespace neritic::diver

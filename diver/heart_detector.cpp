@@ -306,7 +306,8 @@ Beat BeatDetector::locate(const Peak& peak) const {
   const double sign = place(near).band < 0.0 ? -1.0 : 1.0;
   const auto reach = std::max<std::int64_t>(1, std::lround(0.025 * place_hz_));
   // A single sample of a noisy wave may be the largest far from its top.
-  const std::int64_t half = half_top();
+  // Below 84 places a second the samples beside it lie outside of its top.
+  const auto half = static_cast<std::int64_t>(kRoundTop_s * place_hz_);
   const std::int64_t top = largest(std::max(near - reach, half), near + reach, [&](std::int64_t i) {
     double sum = 0.0;
     for (std::int64_t x = -half; x <= half; ++x) sum += sign * place(i + x).raw;

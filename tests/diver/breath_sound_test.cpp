@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <map>
 
 #include "diver/breath_monitor.hpp"
 #include "tests/diver/physio_signals.hpp"
@@ -187,24 +188,25 @@ TEST(BreathSound, HalvesThatAreEqualAreNoRateAndNoConfidence) {
 struct MadeBreath {
   const char* name;
   double in, out, pause, in_size, out_size;
+  bool alike = false;  // in and out are the same white noise
 };
-const std::vector<double>& white_noise(int which) {
-  static const auto all = [] {
-    std::array<std::vector<double>, 2> out;
-    for (std::uint64_t k = 0; k < 2; ++k)
-      for (std::size_t i = 0; i < 240000; ++i) out[k].push_back(test::gauss({16 + k}, i));
-    return out;
-  }();
-  return all[static_cast<std::size_t>(which)];
+const std::vector<double>& white_noise(std::uint64_t which) {
+  static std::map<std::uint64_t, std::vector<double>> all;
+  std::vector<double>& noise = all[which];
+  for (std::size_t i = noise.size(); i < 240000; ++i) noise.push_back(test::gauss({16 + which}, i));
+  return noise;
 }
 Recording made_breath(const MadeBreath& kind, double rate_bpm, double deviation, double noise,
-                      double seconds) {
+                      double seconds, std::uint64_t seed = 0) {
   constexpr double kRate_hz = 2000.0;
   auto hiss = SecondOrderFilter::high_pass(400.0, kRate_hz), sharper = hiss;
   auto bubbles = SecondOrderFilter::low_pass(200.0, kRate_hz), duller = bubbles;
   Recording sound{"", kRate_hz};
+  const std::vector<double>&whites = white_noise(2 * seed), &others = white_noise(2 * seed + 1);
   std::uint64_t draw = 0;
-  const auto varied = [&] { return std::clamp(deviation * test::gauss({15}, draw++), -0.6, 0.6); };
+  const auto varied = [&] {
+    return std::clamp(deviation * test::gauss({15 + 100 * seed}, draw++), -0.6, 0.6);
+  };
   double began_s = 0.0, lasts_s = 0.0, in_size = 0.0, out_size = 0.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(seconds * kRate_hz); ++i) {
     const double t = static_cast<double>(i) / kRate_hz;
@@ -217,11 +219,10 @@ Recording made_breath(const MadeBreath& kind, double rate_bpm, double deviation,
     const double share = (t - began_s) / lasts_s, after = share - kind.in - kind.pause;
     const double in = share < kind.in ? std::sin(kPi * share / kind.in) : 0.0;
     const double out = after > 0.0 && after < kind.out ? std::sin(kPi * after / kind.out) : 0.0;
-    const double white = white_noise(0)[i];
-    const double high = 1.3 * sharper.step(hiss.step(white));
-    const double low = 2.3 * duller.step(bubbles.step(white));
-    sound.samples.push_back(
-        0.1 * (in * in_size * high + out * out_size * low + noise * white_noise(1)[i]));
+    const double white = whites[i];
+    const double high = kind.alike ? white : 1.3 * sharper.step(hiss.step(white));
+    const double low = kind.alike ? white : 2.3 * duller.step(bubbles.step(white));
+    sound.samples.push_back(0.1 * (in * in_size * high + out * out_size * low + noise * others[i]));
   }
   return sound;
 }
@@ -229,10 +230,12 @@ Recording made_breath(const MadeBreath& kind, double rate_bpm, double deviation,
 struct RatesHeard {
   int right = 0, halved = 0, doubled = 0, refused = 0;
 };
-void hear(const Recording& sound, double rate_bpm, double window_s, RatesHeard& out) {
-  for (const BreathState& state : analyse_breath(sound, {.window_s = window_s})) {
+void hear(const Recording& sound, double rate_bpm, double window_s, RatesHeard& out,
+          BreathEstimator estimator = BreathEstimator::kMultiBand) {
+  for (const BreathState& state :
+       analyse_breath(sound, {.estimator = estimator, .window_s = window_s})) {
     const double share = state.estimate.rate_bpm / rate_bpm;
-    if (!state.estimate.breathing)
+    if (quality_of(state.estimate, estimator) != BreathQuality::kGood)
       ++out.refused;
     else if (share < 0.65)
       ++out.halved;
@@ -245,7 +248,8 @@ void hear(const Recording& sound, double rate_bpm, double window_s, RatesHeard& 
 
 constexpr MadeBreath kEven{"1:1", 0.4, 0.4, 0.1, 1.0, 1.0},
     kPaused{"1:2", 0.25, 0.5, 0.03, 1.0, 1.5}, kLongOut{"1:3", 0.18, 0.54, 0.06, 1.5, 1.0},
-    kInAlone{"in", 0.35, 0.0, 0.0, 1.0, 0.0};
+    kInAlone{"in", 0.35, 0.0, 0.0, 1.0, 0.0}, kAlike{"alike", 0.4, 0.4, 0.1, 1.0, 1.0, true},
+    kNearlyAlike{"nearly alike", 0.4, 0.4, 0.1, 1.0, 0.8, true};
 
 TEST(BreathSound, NoRateIsHalvedOrDoubled) {
   RatesHeard all;
@@ -267,6 +271,62 @@ TEST(BreathSound, NoRateIsHalvedOrDoubled) {
           }
         }
   EXPECT_GT(all.right, 0.5 * blocks) << all.right << " of " << blocks;
+}
+
+// In and out that are alike, in water that is as loud: noise hides the flanks of their bursts,
+// which then look like those of one short sound a breath.
+TEST(BreathSound, HalvesThatAreAlikeInNoiseAreNoRate) {
+  RatesHeard all;
+  for (const MadeBreath& kind : {kAlike, kNearlyAlike})
+    for (const double rate_bpm : {4.0, 8.0, 12.0})
+      for (const std::uint64_t seed : {1, 2})
+        hear(made_breath(kind, rate_bpm, 0.1, 0.5, 60.0, seed), rate_bpm, 20.0, all);
+  EXPECT_EQ(all.halved + all.doubled, 0) << all.halved << " halved, " << all.doubled << " doubled";
+}
+
+// The envelope alone finds twice the rate of breaths whose halves are as loud, and half of it where
+// breaths differ.
+TEST(BreathSound, TheAutocorrelationRefusesWhatItCannotTellApart) {
+  constexpr BreathEstimator kEstimator = BreathEstimator::kAutocorrelation;
+  RatesHeard all;
+  int blocks = 0;
+  for (const MadeBreath& kind : {kEven, kPaused, kLongOut, kInAlone, kAlike, kNearlyAlike})
+    for (const double rate_bpm : {3.0, 4.0, 5.0, 6.0, 8.0, 12.0, 20.0, 30.0, 40.0})
+      for (const double noise : {0.1, 0.5})
+        for (const std::uint64_t seed : {1, 2}) {
+          RatesHeard heard;
+          hear(made_breath(kind, rate_bpm, 0.1, noise, 60.0, seed), rate_bpm, 20.0, heard,
+               kEstimator);
+          EXPECT_EQ(heard.halved + heard.doubled, 0)
+              << kind.name << ", " << rate_bpm << " a minute, noise " << noise << ", seed " << seed
+              << ": " << heard.halved << " halved, " << heard.doubled << " doubled";
+          all.right += heard.right;
+          blocks += 6;
+        }
+  EXPECT_GT(all.right, 0.3 * blocks) << all.right << " of " << blocks;
+}
+
+// Faster than any rate that is given: the first windows took every second breath for one.
+TEST(BreathSound, PantingIsNoRate) {
+  for (const MadeBreath& kind : {kEven, kPaused, kLongOut, kInAlone, kAlike})
+    for (const double rate_bpm : {55.0, 60.0, 65.0, 70.0, 75.0})
+      for (const double deviation : {0.0, 0.1}) {
+        RatesHeard heard;
+        hear(made_breath(kind, rate_bpm, deviation, 0.1, 40.0, 1), rate_bpm, 20.0, heard);
+        EXPECT_EQ(heard.refused, 4) << kind.name << ", " << rate_bpm << " a minute";
+      }
+}
+
+TEST(BreathSound, TheQualityIsGoodOfASureRateAlone) {
+  const BreathState sure = analysed(bursts(1.0, 0.6, 60.0), BreathEstimator::kMultiBand);
+  EXPECT_EQ(quality_of(sure.estimate, BreathEstimator::kMultiBand), BreathQuality::kGood);
+  const BreathState doubled = analysed(bursts(1.0, 1.0, 60.0), BreathEstimator::kSpectrum);
+  EXPECT_EQ(quality_of(doubled.estimate, BreathEstimator::kSpectrum), BreathQuality::kPoor);
+  const BreathState alike = analysed(bursts(1.0, 1.0, 60.0), BreathEstimator::kAutocorrelation);
+  EXPECT_EQ(quality_of(alike.estimate, BreathEstimator::kAutocorrelation), BreathQuality::kPoor);
+  EXPECT_EQ(alike.estimate.rate_bpm, 0.0);
+  const BreathState steady = analysed(bursts(1.0, 1.0, 0.0), BreathEstimator::kMultiBand);
+  EXPECT_EQ(quality_of(steady.estimate, BreathEstimator::kMultiBand), BreathQuality::kNone);
 }
 
 TEST(BreathSound, TwelveAMinuteAreHeardInShortAndLongWindows) {

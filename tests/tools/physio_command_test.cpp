@@ -60,6 +60,8 @@ TEST(PhysioCommand, AnEcgBecomesBeatsAsTableJsonAndPicture) {
   const nlohmann::json json = json_in(folder / "out/ecg.json");
   EXPECT_EQ(json["beats"].size(), beats_s.size());
   EXPECT_NEAR(json["variability"]["mean_rate_bpm"].get<double>(), 80.0, 0.1);
+  EXPECT_TRUE(json["variability"]["sdnn_ms"].is_null());  // of even beats all of it is noise
+  EXPECT_GT(json["jitter_ms"].get<double>(), 0.1);
   EXPECT_TRUE(json["spectrum"].is_null());  // half a minute is too short
   expect_plain_table(folder / "out/ecg.csv", "time_s,rr_ms,kind,amplitude\n", beats_s.size());
   EXPECT_EQ(scene::read_image8(folder / "heart.png")->width, 1600u);
@@ -283,7 +285,7 @@ TEST(PhysioCommand, FlagsThatSayNothingAreErrorsInWords) {
   flags.out = folder / "out";
   EXPECT_TRUE(run_physio(flags).ok());
   expect_plain_table(folder / "out/breath.csv",
-                     "time_s,rate_bpm,breathing,confidence,depth_db,quiet_s,refused\n", 2);
+                     "time_s,rate_bpm,breathing,confidence,depth_db,quiet_s,refused,quality\n", 2);
   for (const double window_s : {0.0, -1.0, 2.0, std::nan(""), 301.0}) {
     flags.window_s = window_s;
     EXPECT_THAT(run_physio(flags).error().message, HasSubstr("--window: ")) << window_s;
@@ -309,7 +311,7 @@ TEST(PhysioCommand, FlagsThatSayNothingAreErrorsInWords) {
 TEST(PhysioCommand, APoorSignalHasNoVariability) {
   const test::ScratchFolder folder;
   std::vector<double> beats_s;
-  for (double t = 0.5; t < 149.0; t += 0.8) beats_s.push_back(t);
+  for (double t = 0.5; t < 149.0; t += 0.8 + 0.04 * std::sin(1.7 * t)) beats_s.push_back(t);
   PhysioFlags flags;
   flags.what = "ecg";
   flags.file = (folder / "heart.csv").string();

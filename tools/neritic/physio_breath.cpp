@@ -60,12 +60,13 @@ std::vector<diver::BreathState> plain_states(const BreathReport& report) {
 }
 
 constexpr const char* kBreathHeading =
-    "time_s,rate_bpm,breathing,confidence,depth_db,quiet_s,refused\n";
+    "time_s,rate_bpm,breathing,confidence,depth_db,quiet_s,refused,quality\n";
 
-std::string breath_row(const diver::BreathState& s) {
-  return fmt::format("{:.2f},{:.2f},{},{:.3f},{:.1f},{:.2f},{}\n", s.time_s, s.estimate.rate_bpm,
+std::string breath_row(const diver::BreathState& s, diver::BreathEstimator estimator) {
+  return fmt::format("{:.2f},{:.2f},{},{:.3f},{:.1f},{:.2f},{},{}\n", s.time_s, s.estimate.rate_bpm,
                      s.estimate.breathing ? 1 : 0, s.estimate.confidence, s.estimate.depth_db,
-                     s.quiet_s, s.refused);
+                     s.quiet_s, s.refused,
+                     diver::name_of(diver::quality_of(s.estimate, estimator)));
 }
 
 std::string errors_line(const char* name, const RateErrors& e) {
@@ -140,7 +141,7 @@ Result<BreathReport> play_sound(const PhysioFlags& flags) {
     shown = state.blocks;
     report.states.push_back(state);
     if (flags.json) return;
-    fmt::print("{}", breath_row(state));
+    fmt::print("{}", breath_row(state, report.settings.estimator));
     std::fflush(stdout);
   };
   if (!flags.json) fmt::print("{}", kBreathHeading);
@@ -177,7 +178,7 @@ ReportText report_text(const PhysioFlags& flags, const BreathReport& r) {
   if (r.us_a_second)
     out += fmt::format("# cost: {:.0f} us of one core per second of sound\n", *r.us_a_second);
   std::string table = kBreathHeading;
-  for (const diver::BreathState& s : r.states) table += breath_row(s);
+  for (const diver::BreathState& s : r.states) table += breath_row(s, r.settings.estimator);
   return {std::move(out), std::move(table)};
 }
 

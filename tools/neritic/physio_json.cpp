@@ -13,15 +13,16 @@ json known_json(bool known, double value) {
   return known ? json(value) : json();
 }
 
-json variability_json(bool known, const diver::Variability& v) {
+// varies: not hidden by noise.
+json variability_json(bool known, bool varies, const diver::Variability& v) {
   if (!known) return json();
-  const bool some = v.intervals > 0, paired = v.pairs > 0;
+  const bool any = v.intervals > 0, some = varies && any, paired = varies && v.pairs > 0;
   return {{"intervals", v.intervals},
-          {"mean_rr_ms", known_json(some, v.mean_rr_ms)},
-          {"mean_rate_bpm", known_json(some, v.mean_rate_bpm)},
+          {"mean_rr_ms", known_json(any, v.mean_rr_ms)},
+          {"mean_rate_bpm", known_json(any, v.mean_rate_bpm)},
           {"sdnn_ms", known_json(some, v.sdnn_ms)},
           {"rmssd_ms", known_json(paired, v.rmssd_ms)},
-          {"nn50", v.nn50},
+          {"nn50", paired ? json(v.nn50) : json()},
           {"pairs", v.pairs},
           {"pnn50_percent", known_json(paired, v.pnn50_percent)},
           {"sd1_ms", known_json(paired, v.sd1_ms)},
@@ -57,10 +58,12 @@ json report_json(const PhysioFlags& flags, const EcgReport& r) {
            {"relearned", r.counts.relearned},
            {"quality", diver::name_of(r.quality())},
            {"doubtful_share", r.doubtful_share},
-           {"rate_bpm", known_json(r.figures_known() && r.state.rate_bpm > 0.0, r.state.rate_bpm)},
+           {"rate_bpm", known_json(r.rate_known() && r.state.rate_bpm > 0.0, r.state.rate_bpm)},
+           {"jitter_ms", r.jitter_ms()},
            {"us_a_second", r.us_a_second}};
-  out["variability"] = variability_json(r.figures_known(), r.variability);
-  out["last_five_minutes"] = variability_json(r.figures_known(), r.state.over_five_minutes);
+  out["variability"] = variability_json(r.rate_known(), r.figures_known(), r.variability);
+  out["last_five_minutes"] =
+      variability_json(r.rate_known(), r.figures_known(), r.state.over_five_minutes);
   out["spectrum"] = r.figures_known() && r.spectrum.valid
                         ? json{{"method", "Lomb-Scargle, pieces of 300 s"},
                                {"vlf_ms2", r.spectrum.vlf_ms2},
@@ -107,6 +110,7 @@ json report_json(const PhysioFlags& flags, const BreathReport& r) {
         {{"time_s", s.time_s},
          {"rate_bpm", known_json(s.estimate.breathing != 0, s.estimate.rate_bpm)},
          {"breathing", s.estimate.breathing != 0},
+         {"quality", diver::name_of(diver::quality_of(s.estimate, r.settings.estimator))},
          {"confidence", s.estimate.confidence},
          {"depth_db", s.estimate.depth_db},
          {"quiet_s", s.quiet_s}});

@@ -90,7 +90,7 @@ std::string physiology_md(const PhysiologyTradeoff& t) {
                        p.latency_s, p.rms_bpm);
   if (const HeartPoint* p = heart_choice(t))
     out += fmt::format(
-        "\nThe default of the median: {} intervals, the most whose error is within 5 % of the "
+        "\nThe default of the median: {} intervals, the most whose error is within 10 % of the "
         "least.\n",
         p->intervals);
   out +=

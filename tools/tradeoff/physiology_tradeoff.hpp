@@ -68,8 +68,8 @@ Result<PhysiologyTradeoff> run_physiology_tradeoff(const PhysiologyTradeoffOptio
 std::size_t knee_of(const std::vector<double>& x, const std::vector<double>& y);
 // The knee of multiband: windows with a wrong answer or none, over the window's length.
 const BreathPoint* breath_knee(const PhysiologyTradeoff& tradeoff, const std::string& signals);
-// The median over the most intervals whose error is within 5 % of the least: more of them ride over
-// a missed beat.
+// The median over the most intervals whose error is within 10 % of the least: more of them ride
+// over a missed beat.
 const HeartPoint* heart_choice(const PhysiologyTradeoff& tradeoff);
 
 // Writes physiology.csv, .md, .json and .plot.json into the folder. True: physiology.png was
