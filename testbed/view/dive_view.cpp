@@ -54,9 +54,7 @@ Result<std::unique_ptr<DiveView>> DiveView::create(Session& session, xr::Display
                                  .physics = physics,
                                  .memory = options.memory,
                                  .devices = options.devices,
-                                 .steers = options.may_fly && physics &&
-                                           (!physics->world().vehicles().empty() ||
-                                            !physics->world().humans().empty()),
+                                 .steers = view->steers(),
                                  .units = options.units,
                                  .task = options.task}));
   }
@@ -151,6 +149,7 @@ bool DiveView::take_input() {
   if (wearer_)
     wearer_->take(wears_ && placed_ ? frame_ : xr::DisplayFrame{}, input, choice_.world_from_eyes(),
                   speed, elapsed_s_);
+  if (input.toggle_pilot && !steers()) tell(options_.nobody_to_steer);
   const bool flew = pilot_.flying();
   DiveInput flown = input;
   if (swum) flown.move = Vec3(0.0), flown.turn = 0.0;
@@ -201,6 +200,11 @@ void DiveView::switch_lamps() {
 
 std::optional<ViewMemory> DiveView::memory() const {
   return console_ ? std::optional(console_->memory()) : std::nullopt;
+}
+
+bool DiveView::steers() const {
+  return options_.may_fly && physics_ &&
+         (!physics_->world().vehicles().empty() || !physics_->world().humans().empty());
 }
 
 // In a window a note, else a line.

@@ -46,6 +46,7 @@ struct DiveViewOptions {
   // not.
   std::optional<RunKeeperOptions> keep;
   std::string no_keys_for_files;
+  std::string nobody_to_steer;       // the note of the key that takes control, where it takes none
   ViewMemory memory;                 // as the last window looked
   const Devices* devices = nullptr;  // whose health the panels show; outlives the view
   bool swim = false;  // the keys swim the first diver from the start; needs one, and a window
@@ -100,6 +101,7 @@ class DiveView final : public FrameView {
   std::uint32_t worn_object(const scene::MotionSource& motion, double time_s) const;
   void add_inset(FrameRequest& request, const scene::MotionSource& motion) const;
   void keep_run(const DiveInput& input);
+  bool steers() const;
   void tell(const std::string& note);
   Quality quality() const { return governor_ ? governor_->quality() : Quality{}; }
   double view_scale() const { return quality().view_scale; }

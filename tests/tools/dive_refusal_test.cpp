@@ -62,8 +62,6 @@ TEST_F(DivePhysics, FlagsThatDoNotFitEndInOneLine) {
       {"--headless --refresh 90", "dive.toml", "--refresh: found --headless beside it"},
       {"--headless --swim", "dive.toml", "--swim: found --headless beside it"},
       {"--headless --task look", "dive.toml", "--task: found --headless beside it"},
-      {"--display window --swim", "dive.toml",
-       "--swim: found a scene without a diver that moves by physics; accepted: a scene with"},
       {"--headless --bindings own.toml", "dive.toml", "--bindings: found --headless beside it"}};
   for (const auto& wrong : cases) {
     const Outcome outcome = dive(wrong.arguments, wrong.scene);

@@ -16,6 +16,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/core/log.hpp"
+#include "tools/common/shipped.hpp"
 
 extern char** environ;
 
@@ -84,14 +85,9 @@ void say_not_drawn(const fs::path& picture, const fs::path& data, const std::str
 }  // namespace
 
 fs::path find_python_module(const std::string& name) {
-  std::error_code none;
-  const fs::path program = fs::read_symlink("/proc/self/exe", none);
-  for (fs::path folder = program.parent_path(); !folder.empty(); folder = folder.parent_path()) {
-    for (const char* place : {"tools", "share/neritic"})
-      if (fs::exists(folder / place / name / "__main__.py", none)) return folder / place / name;
-    if (folder == folder.root_path()) break;
-  }
-  return {};
+  return find_shipped({fs::path("tools") / name / "__main__.py",
+                       fs::path("share/neritic") / name / "__main__.py"})
+      .parent_path();
 }
 
 fs::path picture_data_path(const fs::path& picture) {

@@ -31,6 +31,7 @@
 #include "tools/neritic/recording_export.hpp"
 #include "tools/neritic/step_files.hpp"
 #include "tools/neritic/timeline_picture.hpp"
+#include "tools/neritic/worn_scene.hpp"
 
 namespace neritic::tools {
 using namespace testbed;
@@ -87,6 +88,7 @@ Result<Chosen> choose_sensors(const DiveFlags& flags, const scene::Scene& scene)
 
 // Where the pictures go. In the order of creation: each uses those before it.
 struct Screen {
+  std::vector<xr::ActionDesc> actions;
   std::unique_ptr<xr::Window> window;  // of a dive on a desktop
   std::unique_ptr<gpu::Device> device;
   std::unique_ptr<xr::Headset> headset;  // of a dive in one
@@ -99,12 +101,15 @@ struct Screen {
 };
 
 // The headset where one is asked for, or is there.
-Status connect_headset(const DiveFlags& flags, const scene::Scene& scene,
-                       const std::vector<xr::ActionDesc>& actions, Screen& screen) {
+Status connect_headset(const DiveFlags& flags, const scene::Scene& scene, Screen& screen) {
+  screen.actions = dive_actions();
+  if (!flags.bindings.empty()) {
+    NERITIC_TRY(screen.actions, bound_actions(screen.actions, flags.bindings));
+  }
   if (flags.headless || flags.display == "window") return {};
   auto headset = xr::Headset::connect({.room = scene.world_from_lab.has_value(),
                                        .refresh_hz = flags.refresh_hz,
-                                       .actions = actions,
+                                       .actions = screen.actions,
                                        .validation = flags.validation});
   if (headset.ok()) {
     screen.headset = std::move(headset.value());
@@ -121,11 +126,6 @@ Status make_device(const DiveFlags& flags, const scene::Scene& scene, Screen& sc
   options.device = flags.device;
   options.validation = flags.validation;
   options.cache_folder = gpu::default_cache_folder();
-  std::vector<xr::ActionDesc> actions = dive_actions();
-  if (!flags.bindings.empty()) {
-    NERITIC_TRY(actions, bound_actions(actions, flags.bindings));
-  }
-  NERITIC_TRY_STATUS(connect_headset(flags, scene, actions, screen));
   if (screen.headset) {
     screen.headset->require(options);
   } else if (!flags.headless) {
@@ -142,7 +142,7 @@ Status make_device(const DiveFlags& flags, const scene::Scene& scene, Screen& sc
                 xr::Window::create({.title = "Neritic: " + scene.title,
                                     .width = size.first,
                                     .height = size.second,
-                                    .actions = actions,
+                                    .actions = screen.actions,
                                     .hint = "use --headless, or neritic render for pictures"}));
     screen.window->require(options);
     if (!screen.no_headset.empty()) log_warn("{}: the dive is in a window", screen.no_headset);
@@ -239,10 +239,11 @@ void keep_memory(const DiveFlags& flags, const Screen& screen, const DiveView& v
     log_warn("{}", kept.error().message);
 }
 
-// physics_scene: the one whose physics runs, if it is not the one that is shown.
-Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
+// worn: the scene's text if a wearer was added. physics_scene: the one whose physics runs, if it is
+// not the one that is shown.
+Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::string& worn,
                      const std::optional<scene::Scene>& physics_scene,
-                     std::optional<SampleLog> recorded, const Interrupt& interrupt) {
+                     std::optional<SampleLog> recorded, Screen screen, const Interrupt& interrupt) {
   // A run that a person at a screen may stop and speed up.
   sim::HostClock host;
   sim::RunClock run(host);
@@ -263,10 +264,10 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
   RecordingOptions recording;
   if (physics && !replay && (!flags.headless || !flags.files.record.empty())) {
     NERITIC_TRY(recording, recording_options(scene.path, !flags.fast));
+    if (!worn.empty()) recording.scene_text = worn;
   }
   NERITIC_TRY(const Chosen chosen, choose_sensors(flags, scene));
   const scene::Camera camera = scene.cameras[chosen.camera];
-  Screen screen;
   NERITIC_TRY_STATUS(make_device(flags, scene, screen));
   NERITIC_TRY(const auto session, Session::create(*screen.device, std::move(scene)));
   NERITIC_TRY_STATUS(make_display(flags, camera, screen));
@@ -301,6 +302,9 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene,
            .keep = kept_by_key(flags, recording),
            .no_keys_for_files = replay ? "a replay is neither saved nor recorded"
                                        : "nothing moves by physics: there is no state to save",
+           .nobody_to_steer =
+               replay ? "a replay is not steered"
+                      : "nobody here is steered: begin with --swim to be a diver in this scene",
            .memory = screen.memory,
            .devices = devices.get(),
            .swim = flags.swim && screen.window != nullptr,
@@ -417,6 +421,15 @@ Status run_whole_dive(const DiveFlags& asked) {
               recorded ? recorded_scene(*recorded, flags.replay, flags.scene, flags.size)
                        : load_scene_or_model(flags.scene, flags.size));
   if (flags.scene.empty()) flags.scene = scene.path;
+  Screen screen;
+  NERITIC_TRY_STATUS(connect_headset(flags, scene, screen));
+  // A person in the sea is a diver, also where the scene has none.
+  const bool worn_headset = screen.headset && !is_model(scene);
+  std::string worn;
+  if (!recorded && !has_diver(scene) && (flags.swim || worn_headset)) {
+    NERITIC_TRY(WornScene with, with_wearer(scene, flags.size));
+    scene = std::move(with.scene), worn = std::move(with.text);
+  }
   if (flags.seed) scene.seed = *flags.seed;
   NERITIC_TRY_STATUS(check_physics_flags(flags, scene));
   const bool pictures = !asks_for_physics_alone(flags, scene);
@@ -430,9 +443,9 @@ Status run_whole_dive(const DiveFlags& asked) {
   }
   if (pictures) NERITIC_TRY_STATUS(add_view(flags, scene));
   for (const std::string& note : scene.notes) log_warn("{}", note);
-  return pictures
-             ? dive_pictures(flags, std::move(scene), physics_scene, std::move(recorded), interrupt)
-             : dive_physics(flags, scene, std::move(recorded), interrupt);
+  return pictures ? dive_pictures(flags, std::move(scene), worn, physics_scene, std::move(recorded),
+                                  std::move(screen), interrupt)
+                  : dive_physics(flags, scene, std::move(recorded), interrupt);
 }
 
 }  // namespace

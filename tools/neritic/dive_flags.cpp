@@ -1,6 +1,5 @@
 #include "tools/neritic/dive_flags.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "engine/core/refusal.hpp"
@@ -82,11 +81,6 @@ bool asks_for_physics_alone(const DiveFlags& flags, const scene::Scene& scene) {
 
 Status check_physics_flags(const DiveFlags& flags, const scene::Scene& scene) {
   const std::string flag = physics_flag(flags);
-  if (flags.swim && std::ranges::none_of(scene.objects, [](const scene::Object& object) {
-        return object.human.has_value();
-      }))
-    return refusal("--swim", "a scene without a diver that moves by physics",
-                   "a scene with [[objects]] that have human = \"DIVER.toml\"");
   if (flag.empty()) return {};
   if (!PhysicsWorld::needed(scene)) return flag_without_physics(flag, flags.scene);
   const char* alone = flags.realtime       ? "--realtime"
