@@ -213,6 +213,18 @@ SwimGoal hover_goal(const Body& body, SwimGoal goal, const HumanState& state,
   return goal;
 }
 
+// Whether a body with little way stands, or hangs head down, so far off its course that fins would
+// carry it up, or down, for metres before the water had turned it.
+bool stands_off(const SwimGoal& goal, const HumanState& state, const SwimmerState& swimmer) {
+  const Vec3 way = goal.target_ned_m - state.root.position_ned_m;
+  const double climb_rad = std::atan2(-way.z, std::hypot(way.x, way.y));
+  const double pitch_rad = attitude_of(state.root.attitude).pitch_rad;
+  const bool goes_on = swimmer.goes_back == kRightsHimself;
+  if (!goes_on && swimmer.rests < 0.5) return false;
+  const double least_rad = goes_on ? kSteep_rad : kUpright_rad;
+  return std::min(std::abs(pitch_rad), std::abs(pitch_rad - climb_rad)) > least_rad;
+}
+
 // Metres a second down to that depth. A place well above or below is approached at a rate that
 // grows slowly.
 double wanted_sink(double deeper_m, bool swims, SwimmerState& swimmer, double dt_s) {
@@ -379,9 +391,11 @@ HumanAttitude attitude_of(const Quat& q) {
 
 void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& asked,
           const HumanState& state, SwimmerState& swimmer, double dt_s, HumanInputs& inputs) {
-  const bool hovers = asked.speed_m_s <= settings.gliding_speed_m_s;
+  const bool hovers =
+      asked.speed_m_s <= settings.gliding_speed_m_s || stands_off(asked, state, swimmer);
   if (!hovers) swimmer.goes_back = 0;
-  const SwimGoal goal = hovers ? hover_goal(body, asked, state, swimmer) : asked;
+  const SwimGoal goal =
+      hovers ? hover_goal(body, {asked.target_ned_m, 0.0}, state, swimmer) : asked;
   const HumanAttitude attitude = attitude_of(state.root.attitude);
   const Vec3 velocity_ned = state.root.attitude * state.root.velocity.linear();
   const Vec3 ahead_ned = state.root.attitude * Vec3(1.0, 0.0, 0.0);

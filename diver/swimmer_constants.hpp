@@ -105,6 +105,8 @@ inline constexpr double kAdrift_m = 3.0, kNear_m = 0.7, kTilted_rad = radians(20
 // each of two joints of the back, legs behind. Either 0.7 times as large gives 8.5 degrees off
 // level while hovering.
 inline constexpr double kSteep_rad = radians(25.0), kStoop_rad = radians(17.0);
+// More upright than this, a diver who is to swim level lies down first, as one who hovers does.
+inline constexpr double kUpright_rad = radians(55.0);
 inline constexpr double kStoopLag_s = 0.7;  // free
 // A faster drift is a current: the head stays into it, kAsideMetre over the drift to a side for
 // each metre that the place lies there, less kAsideSpeed_s for each m/s towards it, at most

@@ -347,6 +347,34 @@ TEST(Swimmer, WhoStandsTurnsCalmlyIntoTrim) {
   }
 }
 
+// Nor does one who is to swim on the level kick before he lies: he rose by 5 to 8 m. A way up is
+// begun at once.
+TEST(Swimmer, WhoStandsLiesDownBeforeHeSwims) {
+  const Body body = body_with(Gear{});
+  for (const double heading_deg : {0.0, 90.0, 180.0}) {
+    const auto stand = [&] {
+      Swim s = begin(body, {0.0, 0.0, 12.0}, 0.0);
+      s.state = start_at(body, {0.0, 0.0, 12.0},
+                         glm::angleAxis(radians(heading_deg), Vec3(0, 0, 1)) *
+                             glm::angleAxis(0.5 * kPi, Vec3(0, 1, 0)),
+                         rotations_of(streamlined(body)));
+      return s;
+    };
+    Swim level = stand();
+    double highest_m = 100.0, deepest_m = 0.0;
+    swim_for(body, level, {{60.0, 0.0, 12.0}, 0.45}, 80.0, [&](const HumanState& state) {
+      highest_m = std::min(highest_m, state.root.position_ned_m.z);
+      deepest_m = std::max(deepest_m, state.root.position_ned_m.z);
+    });
+    EXPECT_GT(highest_m, 10.7) << heading_deg;
+    EXPECT_LT(deepest_m, 13.3) << heading_deg;
+    EXPECT_GT(level.state.root.position_ned_m.x, 12.0) << heading_deg;
+    Swim up = stand();
+    swim_for(body, up, {{0.5, 0.0, 6.0}, 0.45}, 20.0, [](const HumanState&) {});
+    EXPECT_LT(up.state.root.position_ned_m.z, 11.0) << heading_deg;
+  }
+}
+
 // A diver who hovers in a current returns slowly: a place 2.4 m beside moves no faster than a
 // vehicle that keeps there flies, and three metres of drift are left alone.
 TEST(Swimmer, ComesBackNoFasterThanWhoKeepsBesideCanFollow) {
