@@ -83,27 +83,6 @@ AlarmState step_alarms(const AlarmState& before, const DiveData& data) {
   return after;
 }
 
-AlarmWords words_of(Alarm alarm, AlarmLevel level, bool other_gas) {
-  const bool danger = level == AlarmLevel::kDanger;
-  switch (alarm) {
-    case Alarm::kLink:
-      return {"CONNECTION LOST", "USE OWN GAUGES"};
-    case Alarm::kGas:
-      if (!danger) return {"GAS LOW", "GO UP"};
-      return {"NO GAS", other_gas ? "CHANGE GAS" : "BUDDY'S GAS OR GO UP"};
-    case Alarm::kCeiling:
-      return {"ABOVE CEILING", "GO DOWN"};
-    case Alarm::kOxygen:
-      return {"OXYGEN HIGH", "GO UP"};
-    case Alarm::kAscent:
-      return danger ? AlarmWords{"MUCH TOO FAST", "STOP RISING"}
-                    : AlarmWords{"TOO FAST", "SLOW DOWN"};
-    case Alarm::kNoStop:
-      return {"NO-STOP TIME LOW", "GO UP"};
-  }
-  return {"", ""};
-}
-
 const char* name_of(Alarm alarm) {
   constexpr const char* kNames[] = {"link", "gas", "ceiling", "oxygen", "ascent", "no_stop"};
   return kNames[static_cast<std::size_t>(alarm)];

@@ -37,12 +37,6 @@ struct AlarmState {
 // The alarms at data.time_s. A time before the last one is a new start.
 AlarmState step_alarms(const AlarmState& before, const DiveData& data);
 
-// "ASCENT TOO FAST" and what to do: "SLOW DOWN".
-struct AlarmWords {
-  const char *what, *act;
-};
-// other_gas: another tank has gas that can be breathed here (DiveData).
-AlarmWords words_of(Alarm alarm, AlarmLevel level, bool other_gas = false);
 const char* name_of(Alarm alarm);       // "link", "gas", "ceiling", "oxygen", "ascent", "no_stop"
 const char* name_of(AlarmLevel level);  // "off", "caution", "danger"
 

@@ -52,6 +52,8 @@ struct DiveData {
   double needed_l = kUnknown, available_l = kUnknown;  // for the ascent, and in the tank
   bool out_of_gas = false;
   bool other_gas = false;  // another of the diver's tanks has gas that can be breathed here
+  // The same with less oxygen than now, and no more than that tank's own limit.
+  bool leaner_gas = false;
 
   // Jacket and body. buttons: diver::kInflate, kDeflate, kDump.
   double jacket_m3 = kUnknown, jacket_full_m3 = kUnknown;

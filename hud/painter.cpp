@@ -189,15 +189,9 @@ void Painter::compass(const Box& box, const Shown& shown, double size) {
 }
 
 void Painter::alarm_band(const Box& box, const Shown& shown, double size) {
-  std::size_t first = kAlarms, count = 0;
-  for (std::size_t i = 0; i < kAlarms; ++i) {
-    if (shown.alarms[i] == AlarmLevel::kOff) continue;
-    ++count;
-    if (first == kAlarms || shown.alarms[i] > shown.alarms[first]) first = i;
-  }
-  if (count == 0) return;
-  const Tone tone{shown.alarms[first], shown.flash};
-  const AlarmWords words = words_of(static_cast<Alarm>(first), tone.level, shown.other_gas);
+  const Advice& advice = shown.advice;
+  if (advice.level == AlarmLevel::kOff) return;
+  const Tone tone{advice.level, shown.flash};
   plate(box, 8.0, plate_of(tone));
   const double mark = 0.32 * box.h, x = box.x + 12.0 + mark;
   triangle(x, box.y + 0.5 * box.h, mark, true, kBlack);
@@ -206,19 +200,19 @@ void Painter::alarm_band(const Box& box, const Shown& shown, double size) {
                plate_of(tone), Align::kCenter, Face::kBold);
   const double left = x + mark + 12.0;
   double right = box.right() - 10.0;
-  if (count > 1) {
-    const FixedText more = FixedText::of("+{}", count - 1);
+  if (advice.others > 0) {
+    const FixedText more = FixedText::of("+{}", advice.others);
     right -= text(right, box.y + 0.5 * (box.h + size), size, more.view(), kBlack, Align::kRight,
                   Face::kBold) +
              8.0;
   }
-  const auto fitted = [&](std::string_view words_of_it, double wanted) {
-    return std::min(wanted, wanted * (right - left) / width(wanted, words_of_it, Face::kBold));
+  const auto fitted = [&](std::string_view words, double wanted) {
+    return std::min(wanted, wanted * (right - left) / width(wanted, words, Face::kBold));
   };
   const double space = (box.h - 1.75 * size) / 3.0;
-  text(left, box.y + space + size, fitted(words.what, size), words.what, kBlack, Align::kLeft,
-       Face::kBold);
-  text(left, box.bottom() - space, fitted(words.act, 0.75 * size), words.act, kBlack, Align::kLeft,
+  const std::string_view what = advice.what.view(), act = advice.act.view();
+  text(left, box.y + space + size, fitted(what, size), what, kBlack, Align::kLeft, Face::kBold);
+  text(left, box.bottom() - space, fitted(act, 0.75 * size), act, kBlack, Align::kLeft,
        Face::kBold);
 }
 

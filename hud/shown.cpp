@@ -156,7 +156,8 @@ Shown shown_of(LayoutKind layout, Units units, const DiveData& data, const Alarm
   if (layout == LayoutKind::kMask) out.heading = heading_text(data.heading_rad);
   if (layout == LayoutKind::kConsole) show_operator(data, units, minute, about, out);
   out.alarms = alarms.level;
-  out.other_gas = data.other_gas && alarms.of(Alarm::kGas) == AlarmLevel::kDanger;
+  out.advice = advice_of({alarms.level, room_of(data), data.other_gas, data.leaner_gas,
+                          FixedText::of("{} {}", out.stop.view(), unit_names(units).depth)});
   const bool danger = std::ranges::any_of(
       alarms.level, [](AlarmLevel level) { return level == AlarmLevel::kDanger; });
   out.flash = (danger || out.condition.unconscious) && std::fmod(std::abs(data.time_s), 1.0) >= 0.5;

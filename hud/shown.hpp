@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "hud/alarms.hpp"
+#include "hud/advice.hpp"
 #include "hud/layout.hpp"
 #include "hud/minute.hpp"
 #include "hud/numbers.hpp"
@@ -50,7 +50,6 @@ struct Shown {
   FixedText ascent, tank, gas_min, gas, mod, oxygen, cns, heading;
   FixedText jacket, lift, net, heart, breath;
   bool in_stops = false, sinks = false, net_known = false;
-  bool other_gas = false;  // while an alarm says that there is no gas
   // Begun steps of kAscentStep_m_min, up positive, at most kAscentSteps + 1; the bar's marks of the
   // two limits.
   int ascent_steps = 0, fast_steps = 3, dangerous_steps = 6;
@@ -61,6 +60,7 @@ struct Shown {
   std::uint64_t buttons = 0;
   ShownCondition condition;
   std::array<AlarmLevel, kAlarms> alarms{};
+  Advice advice;
   bool flash = false;  // the half of a second in which a danger is drawn in its other colours
   // 0: not known; 1 to 255 from a trace's lower to its upper end.
   std::array<std::uint8_t, Minute::kSamples> heart_trace{}, lungs_trace{};

@@ -44,13 +44,14 @@ void read_computer(const PhysicsHuman& human, const HumanPhysics& state, hud::Di
     out.tissues[i] = hud::tissue_bar(model, computer.tissues, i, ambient_bar);
 }
 
-// Whether a tank gives a full breath of a gas with enough oxygen here, and not too much.
-bool can_be_breathed(const diver::Body& body, const diver::HumanState& state, std::size_t tank) {
+// Whether a tank gives a full breath of a gas with enough oxygen here, and no more than most_bar.
+bool can_be_breathed(const diver::Body& body, const diver::HumanState& state, std::size_t tank,
+                     double most_bar = diver::kMostOxygen_bar) {
   const double ambient_pa = diver::pressure_at(body, state.root.position_ned_m.z);
   const double oxygen_bar = 1e-5 * ambient_pa * body.tanks[tank].mix.oxygen;
   // A diver in a mountain lake is used to its air, as in diver/gas_switch.cpp.
   const double used_to = std::min(body.surface_pa / diver::kSurfacePressure_pa, 1.0);
-  return oxygen_bar >= used_to * diver::kLeastOxygen_bar && oxygen_bar <= diver::kMostOxygen_bar &&
+  return oxygen_bar >= used_to * diver::kLeastOxygen_bar && oxygen_bar <= most_bar &&
          diver::tank_pressure(body, state.life.tanks, tank) >= ambient_pa + diver::kWeakTank_pa;
 }
 
@@ -67,8 +68,13 @@ void read_gas(const PhysicsHuman& human, const HumanPhysics& state, hud::DiveDat
   out.tank_pa = gas.tank_pa;
   out.gas_min = gas.remaining_s / 60.0;
   out.out_of_gas = state.human.life.lungs.unfed_s > 0.0;
-  for (std::size_t i = 0; i < human.body.tank_count; ++i)
-    out.other_gas = out.other_gas || (i != tank && can_be_breathed(human.body, state.human, i));
+  for (std::size_t i = 0; i < human.body.tank_count; ++i) {
+    if (i == tank) continue;
+    const double limit_bar = i == 0 ? hud::kBottomOxygen_bar : diver::kMostOxygen_bar;
+    out.other_gas = out.other_gas || can_be_breathed(human.body, state.human, i);
+    out.leaner_gas = out.leaner_gas || (human.body.tanks[i].mix.oxygen < out.gas.oxygen &&
+                                        can_be_breathed(human.body, state.human, i, limit_bar));
+  }
 }
 
 void read_body(const PhysicsHuman& human, const HumanPhysics& state, hud::DiveData& out) {

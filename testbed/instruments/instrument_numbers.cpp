@@ -44,6 +44,7 @@ void for_each_number(Data& d, Visit&& visit) {
   visit("available_l", d.available_l);
   visit("out_of_gas", d.out_of_gas);
   visit("other_gas", d.other_gas);
+  visit("leaner_gas", d.leaner_gas);
   visit("jacket_m3", d.jacket_m3);
   visit("jacket_full_m3", d.jacket_full_m3);
   visit("lift_n", d.lift_n);

@@ -91,13 +91,45 @@ double luminance(const std::uint8_t* p, const int* water) {
          blue[p[2] + water[2] * through / 255];
 }
 
+// The longest texts that numbers have.
+DiveData long_dive(bool in_stops) {
+  DiveData d = in_stops ? stops_dive() : calm_dive();
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  d.dive_min = 999.9, d.depth_m = d.deepest_m = 299.6, d.to_surface_min = kInf, d.gas_min = kInf;
+  d.stop_min = kInf, d.gas = {0.10, 0.70}, d.tank_pa = 299e5, d.cns_percent = 5000.0;
+  d.po2_bar = 12.0, d.ascent_m_min = 188.0;
+  if (in_stops)
+    d.ceiling_m = 118.3, d.stop_m = 120.0;
+  else
+    d.no_stop_min = kInf;
+  return d;
+}
+
+// The longest words of an alarm, with all others.
+DiveData wordy_dive() {
+  DiveData d = stops_dive();
+  d.depth_m = d.deepest_m = 150.0, d.ceiling_m = 118.3, d.stop_m = 120.0;
+  d.tank_pa = 1e5, d.out_of_gas = true, d.po2_bar = 1.7;
+  return d;
+}
+
+std::vector<NamedDive> tested_dives() {
+  std::vector<NamedDive> dives = all_dives();
+  dives.push_back({"long", long_dive(false)});
+  dives.push_back({"long stops", long_dive(true)});
+  dives.push_back({"wordy", wordy_dive()});
+  return dives;
+}
+
 TEST(HudLayout, EveryTextIsLargeEnoughToBeRead) {
   for (const Layout& layout : layouts()) {
     const double px_deg = pixels_a_degree(layout);
     EXPECT_GE(px_deg, kLeastPixels_deg) << layout.name;
     EXPECT_NEAR(layout.size_m.x / layout.size_m.y, double(layout.width_px) / layout.height_px, 0.02)
         << layout.name;
-    for (const NamedDive& dive : all_dives()) {
+    std::vector<NamedDive> dives = all_dives();
+    dives.push_back({"wordy", wordy_dive()});
+    for (const NamedDive& dive : dives) {
       const Hud hud = hud_of(layout.kind, dive.data);
       ASSERT_GT(hud.marks().size(), 12u);
       for (const TextMark& mark : hud.marks())
@@ -116,24 +148,8 @@ TEST(HudLayout, DepthIsTheLargestNumber) {
   }
 }
 
-// The longest texts that numbers have.
-DiveData long_dive(bool in_stops) {
-  DiveData d = in_stops ? stops_dive() : calm_dive();
-  constexpr double kInf = std::numeric_limits<double>::infinity();
-  d.dive_min = 999.9, d.depth_m = d.deepest_m = 299.6, d.to_surface_min = kInf, d.gas_min = kInf;
-  d.stop_min = kInf, d.gas = {0.10, 0.70}, d.tank_pa = 299e5, d.cns_percent = 5000.0;
-  d.po2_bar = 12.0, d.ascent_m_min = 188.0;
-  if (in_stops)
-    d.ceiling_m = 118.3, d.stop_m = 120.0;
-  else
-    d.no_stop_min = kInf;
-  return d;
-}
-
 TEST(HudLayout, NoTextLeavesThePictureOrMeetsAnother) {
-  std::vector<NamedDive> dives = all_dives();
-  dives.push_back({"long", long_dive(false)});
-  dives.push_back({"long stops", long_dive(true)});
+  const std::vector<NamedDive> dives = tested_dives();
   for (const Layout& layout : layouts())
     for (std::size_t of = 0; of < 2 * dives.size(); ++of) {
       const NamedDive& dive = dives[of / 2];

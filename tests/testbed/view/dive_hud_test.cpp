@@ -81,6 +81,24 @@ TEST(InstrumentData, AnotherTankIsToldOnlyWhereItsGasCanBeBreathed) {
   }
 }
 
+// At 12 m no tank of these has too much oxygen. One with less than now is leaner, one with more is
+// not.
+TEST(InstrumentData, ALeanerGasHasLessOxygenThanTheOneThatIsBreathed) {
+  const test::ScratchFolder folder;
+  const std::string file = (folder / "human.toml").string();
+  for (const auto& [tanks, wanted] :
+       {std::pair("[ { oxygen = 0.32 } ]", false),
+        {"[ { oxygen = 0.32 }, { oxygen = 0.21 } ]", true},
+        {"[ { oxygen = 0.32 }, { oxygen = 0.50 } ]", false},
+        {"[ { oxygen = 0.32 }, { oxygen = 0.05, helium = 0.8 } ]", false},
+        {"[ { oxygen = 0.32 }, { oxygen = 0.21, pressure_bar = 3 } ]", false}}) {
+    ASSERT_TRUE(write_text(file, fmt::format("tanks = {}\n", tanks)).ok());
+    const auto physics = diver_physics("", file);
+    const hud::DiveData data = instrument_data(physics->world(), 0, physics->shown_snapshot());
+    EXPECT_EQ(data.leaner_gas, wanted) << tanks;
+  }
+}
+
 // From the axes: the head's way while the diver lies, the belly's while the diver stands.
 TEST(InstrumentData, HeadingIsAheadInAnyAttitude) {
   for (const double heading : {0.1, 1.0, 2.5, 4.0, 6.0})
