@@ -68,15 +68,18 @@ bool AlarmState::any() const {
   return std::ranges::any_of(level, [](AlarmLevel l) { return l != AlarmLevel::kOff; });
 }
 
-AlarmState step_alarms(const AlarmState& before, const DiveData& data) {
+AlarmState step_alarms(const AlarmState& before, const DiveData& data, double seen_s) {
   const std::array<Asked, kAlarms> asked{link(data),   gas(data),    ceiling(data),
                                          oxygen(data), ascent(data), no_stop(data)};
   AlarmState after = before;
   for (std::size_t i = 0; i < kAlarms; ++i) {
     const AlarmLevel was = before.level[i];
-    const double on_s = data.time_s - before.since_s[i];
+    // A connection is no part of the scene's state, and its time is the listener's.
+    const bool restored =
+        data.time_s < before.scene_since_s[i] && static_cast<Alarm>(i) != Alarm::kLink;
+    const double on_s = restored ? kLeastOn_s : seen_s - before.since_s[i];
     const AlarmLevel now = std::max(asked[i].begins, std::min(was, asked[i].kept));
-    if (now > was) after.since_s[i] = data.time_s;
+    if (now > was) after.since_s[i] = seen_s, after.scene_since_s[i] = data.time_s;
     if (now < was && on_s >= 0.0 && on_s < kLeastOn_s) continue;
     after.level[i] = now;
   }

@@ -25,7 +25,7 @@ inline constexpr double kDecoOxygen_bar = diver::kMostOxygen_bar + 0.05;
 inline constexpr double kReserve_pa = 50e5;
 
 struct DiveData {
-  double time_s = 0.0;     // of the scene; alarms and the last minute go by it
+  double time_s = 0.0;     // of the scene; the last minute goes by it
   bool link_lost = false;  // they came from elsewhere, and come no longer
 
   // The dive computer. Depths are metres of the scene's water, as bar_per_m says.

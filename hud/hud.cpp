@@ -27,17 +27,17 @@ void Hud::resize(std::uint32_t height_px) {
   drawn_ = false;
 }
 
-void Hud::observe(const DiveData& data) {
-  alarms_ = step_alarms(alarms_, data);
+void Hud::observe(const DiveData& data, double seen_s) {
+  alarms_ = step_alarms(alarms_, data, seen_s);
   minute_.add(data);
   gas_left_.add(data);
 }
 
-bool Hud::update(const DiveData& data, const OperatorData& about) {
-  observe(data);
+bool Hud::update(const DiveData& data, double seen_s, const OperatorData& about) {
+  observe(data, seen_s);
   DiveData smooth = data;
   smooth.gas_min = gas_left_.minutes(data);
-  const Shown next = shown_of(layout_.kind, units_, smooth, alarms_, minute_, about);
+  const Shown next = shown_of(layout_.kind, units_, smooth, alarms_, minute_, about, seen_s);
   if (drawn_ && next == shown_) return false;
   shown_ = next;
   drawn_ = true;

@@ -18,12 +18,15 @@ class Hud {
   // From the next update on the picture has this height; alarms and the last minute stay.
   void resize(std::uint32_t height_px);
   // Alarms, the last minute and the mean of the breathing go on, and nothing is drawn.
-  void observe(const DiveData& data);
+  // seen_s: of the viewer's clock, by which alarms last and flash; the rest goes by data.time_s.
+  void observe(const DiveData& data, double seen_s);
   // The same, and draws. Whether the picture changed.
-  bool update(const DiveData& data, const OperatorData& about = {});
+  bool update(const DiveData& data, double seen_s, const OperatorData& about = {});
 
   const Layout& layout() const { return layout_; }
   const AlarmState& alarms() const { return alarms_; }
+  // Whether the newest picture has a danger in it, which flashes.
+  bool flashes() const { return shown_.flashes; }
   const Shown& shown() const { return shown_; }
   // RGBA, sRGB-encoded, colour multiplied by alpha; transparent before the first update.
   const ImageU8& picture() const { return canvas_.image(); }

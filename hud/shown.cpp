@@ -145,7 +145,7 @@ void show_operator(const DiveData& d, Units units, const Minute& minute, const O
 }  // namespace
 
 Shown shown_of(LayoutKind layout, Units units, const DiveData& data, const AlarmState& alarms,
-               const Minute& minute, const OperatorData& about) {
+               const Minute& minute, const OperatorData& about, double seen_s) {
   Shown out;
   out.units = units;
   show_depths(data, units, out);
@@ -160,8 +160,13 @@ Shown shown_of(LayoutKind layout, Units units, const DiveData& data, const Alarm
                           FixedText::of("{} {}", out.stop.view(), unit_names(units).depth)});
   const bool danger = std::ranges::any_of(
       alarms.level, [](AlarmLevel level) { return level == AlarmLevel::kDanger; });
-  out.flash = (danger || out.condition.unconscious) && std::fmod(std::abs(data.time_s), 1.0) >= 0.5;
+  out.flashes = danger || out.condition.unconscious;
+  out.flash = out.flashes && flash_at(seen_s);
   return out;
+}
+
+bool flash_at(double seen_s) {
+  return std::fmod(std::abs(seen_s), kFlash_s) >= 0.5 * kFlash_s;
 }
 
 double tissue_bar(const diver::Buehlmann& model, const diver::TissueState& tissues,

@@ -61,7 +61,8 @@ struct Shown {
   ShownCondition condition;
   std::array<AlarmLevel, kAlarms> alarms{};
   Advice advice;
-  bool flash = false;  // the half of a second in which a danger is drawn in its other colours
+  // Whether a danger is shown, and whether this is the half of a second of its other colours.
+  bool flashes = false, flash = false;
   // 0: not known; 1 to 255 from a trace's lower to its upper end.
   std::array<std::uint8_t, Minute::kSamples> heart_trace{}, lungs_trace{};
   bool has_gaze = false;
@@ -77,7 +78,10 @@ struct Shown {
 inline constexpr double kHeartTrace_bpm[2] = {40.0, 180.0}, kLungsTrace_l[2] = {0.0, 7.0};
 
 // Fields that the layout does not draw stay as in an empty Shown, so that they cost no new picture.
+// seen_s: when the picture is seen, as in step_alarms.
 Shown shown_of(LayoutKind layout, Units units, const DiveData& data, const AlarmState& alarms,
-               const Minute& minute, const OperatorData& about);
+               const Minute& minute, const OperatorData& about, double seen_s);
+// Half of kFlash_s: whether a danger is drawn in its other colours.
+bool flash_at(double seen_s);
 
 }  // namespace neritic::hud

@@ -108,11 +108,25 @@ void DiveHud::cycle() {
   choice_ = (choice_ + 1) % (instruments_.size() + 2);
 }
 
-// Whether there is something new.
-bool DiveHud::look(const HudView& view) {
+// Whether the picture may change: by new numbers, or as a danger flashes.
+bool DiveHud::due(double seen_s) {
+  const bool flash = hud::flash_at(seen_s);
+  const bool flashes =
+      flash != flash_ &&
+      std::ranges::any_of(instruments_, [](const Instrument& i) { return i.hud.flashes(); });
+  const double after_s = next_seen_s_ - seen_s;
+  // Where the viewer's clock begins anew, it begins now.
+  if (!flashes && after_s > 1e-9 && after_s <= 1.0 / kHudRate_hz + 1e-9) return false;
+  flash_ = flash;
+  next_seen_s_ = seen_s + 1.0 / kHudRate_hz;
+  return true;
+}
+
+// Whether the feed was read. anew: a picture is made of it.
+bool DiveHud::look(const HudView& view, bool anew) {
   const double time_s = feed_->time_s();
   // A state that was restored may lie before the last one.
-  if (time_s < next_s_ - 1e-9 && time_s >= data_.time_s) return false;
+  if (!anew && time_s < next_s_ - 1e-9 && time_s >= data_.time_s) return false;
   InstrumentNews news = feed_->read();
   data_ = news.data;
   streams_ = std::move(news.streams);
@@ -123,20 +137,21 @@ bool DiveHud::look(const HudView& view) {
 
 Status DiveHud::declare(graph::FrameGraph& graph, const HudView& view,
                         std::vector<xr::Layer>& layers) {
-  const bool anew = look(view);
+  const bool anew = due(view.seen_s);
+  const bool heard = look(view, anew);
   const auto in_window = view.tracked ? std::vector<HudPlace>() : places(view.group);
   for (Instrument& instrument : instruments_) {
     const hud::Layout& layout = instrument.hud.layout();
     const auto found = std::ranges::find(in_window, layout.kind, &HudPlace::kind);
     const PanelRect rect = found == in_window.end() ? PanelRect() : found->rect;
     if (!shown(layout.kind) || (!view.tracked && rect.empty())) {
-      if (anew) instrument.hud.observe(data_);
+      if (heard) instrument.hud.observe(data_, view.seen_s);
       continue;
     }
     const std::uint32_t height_px =
         view.tracked ? layout.height_px : static_cast<std::uint32_t>(rect.height);
     NERITIC_TRY(const graph::ImageHandle image,
-                declare_picture(graph, instrument, height_px, anew));
+                declare_picture(graph, instrument, height_px, anew, view.seen_s));
     layers.push_back(place(instrument, view, rect));
     std::get<xr::PanelLayer>(layers.back()).image = image;
   }
@@ -164,14 +179,15 @@ Status DiveHud::make_image(Instrument& instrument) {
 
 Result<graph::ImageHandle> DiveHud::declare_picture(graph::FrameGraph& graph,
                                                     Instrument& instrument, std::uint32_t height_px,
-                                                    bool anew) {
+                                                    bool anew, double seen_s) {
   const bool resized = height_px != instrument.height_px;
   if (resized) {
     instrument.hud.resize(height_px);
     instrument.height_px = height_px;
     NERITIC_TRY_STATUS(make_image(instrument));
   }
-  const bool changed = (anew || resized) && instrument.hud.update(data_, about_);
+  const bool changed = (anew || resized) && instrument.hud.update(data_, seen_s, about_);
+  if (!anew && !resized) instrument.hud.observe(data_, seen_s);
   if (!changed)
     return graph.import_image(instrument.image,
                               {.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});

@@ -17,7 +17,8 @@
 
 namespace neritic::testbed {
 
-// Numbers and alarms change no quicker; a flash takes half a second.
+// Of pictures with new numbers, a second of the viewer, and of looks at the feed, a second of the
+// scene: the last minute misses no breath where time runs fast.
 inline constexpr double kHudRate_hz = 5.0;
 
 struct DiveHudOptions {
@@ -36,6 +37,9 @@ struct HudView {
   // are held before the eyes.
   std::optional<Pose> world_from_wrist = {};
   bool stage_at_eyes = false;  // the stage's origin is where the head was, not the floor
+  // When the picture is seen, on a clock that neither stops nor hurries with the scene's; where
+  // nobody waits for the pictures, their own time. Alarms last and flash by it.
+  double seen_s = 0.0;
 };
 
 class DiveHud {
@@ -63,9 +67,10 @@ class DiveHud {
     std::uint32_t height_px = 0;
     gpu::Image image;  // of the hud's picture, once it was uploaded
   };
-  bool look(const HudView& view);
+  bool look(const HudView& view, bool anew);
+  bool due(double seen_s);
   Result<graph::ImageHandle> declare_picture(graph::FrameGraph& graph, Instrument& instrument,
-                                             std::uint32_t height_px, bool anew);
+                                             std::uint32_t height_px, bool anew, double seen_s);
   Status make_image(Instrument& instrument);
   // rect: of a window.
   xr::PanelLayer place(const Instrument& instrument, const HudView& view,
@@ -83,6 +88,8 @@ class DiveHud {
   hud::OperatorData about_;
   std::vector<hud::StreamHealth> streams_;  // of about_
   double next_s_ = -1.0;                    // the scene time of the next look at the feed
+  double next_seen_s_ = -1.0;               // when the next picture with new numbers is seen
+  bool flash_ = false;                      // of the newest picture
 };
 
 }  // namespace neritic::testbed

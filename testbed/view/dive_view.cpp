@@ -353,6 +353,7 @@ Status DiveView::declare(graph::FrameGraph& graph, const SensorFrame& frame, dou
     HudView seen{group, frame_.world_from_head.has_value(), world_from_stage_,
                  world_from_head_ * group.views.front().head_from_view};
     seen.stage_at_eyes = !session_.scene().world_from_lab;
+    seen.seen_s = frame_.display_at_ns ? 1e-9 * static_cast<double>(*frame_.display_at_ns) : time_s;
     // On the drawn arm, which follows the tracked one.
     if (frame_.tracked.hands[0] && wearer_ && wears_)
       seen.world_from_wrist =

@@ -55,12 +55,12 @@ struct Told {
 // The alarms begin where the numbers are known. In kUnknown these are lost, and the alarms stay.
 Told told_in(const Case& c) {
   DiveData d = data_of(c);
-  AlarmState alarms = step_alarms({}, d);
+  AlarmState alarms = step_alarms({}, d, d.time_s);
   if (c.place == Place::kUnknown) {
     d.depth_m = d.ceiling_m = d.no_stop_min = d.stop_m = kUnknown;
-    alarms = step_alarms(alarms, d);
+    alarms = step_alarms(alarms, d, d.time_s);
   }
-  return {alarms, shown_of(LayoutKind::kMask, Units::kMetric, d, alarms, {}, {}).advice};
+  return {alarms, shown_of(LayoutKind::kMask, Units::kMetric, d, alarms, {}, {}, d.time_s).advice};
 }
 
 std::string name_in(const Case& c, const Advice& advice) {
@@ -160,20 +160,20 @@ TEST(HudAdvice, TheWordsEndTheAlarmThatTheyStandUnder) {
 TEST(HudAdvice, AfterTheCeilingIsLeftTheDiverIsKeptBelowIt) {
   Hud hud(LayoutKind::kMask, Units::kMetric, 140);
   Case c{.place = Place::kAbove};
-  hud.update(data_of(c));
+  hud.update(data_of(c), 2000.0);
   DiveData d = stops_dive();
   d.time_s += 1.0;
-  hud.update(d);
+  hud.update(d, d.time_s);
   ASSERT_TRUE(hud.alarms().on(Alarm::kCeiling));
   EXPECT_EQ(hud.shown().advice.act.view(), "STAY BELOW 9.1 m");
   d.time_s += 1.0, d.depth_m = 9.1;
-  hud.update(d);
+  hud.update(d, d.time_s);
   EXPECT_EQ(hud.shown().advice.act.view(), "HOLD STOP");
 }
 
 TEST(HudAdvice, FeetWhereUnitsAreImperial) {
   Hud hud(LayoutKind::kMask, Units::kImperial, 140);
-  hud.update(data_of({.place = Place::kAbove}));
+  hud.update(data_of({.place = Place::kAbove}), 0.0);
   EXPECT_EQ(hud.shown().advice.act.view(),
             "GO DOWN TO 31 ft");  // 29.67, and half a foot
 }

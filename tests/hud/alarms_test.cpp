@@ -17,15 +17,15 @@ std::vector<std::pair<double, AlarmLevel>> changes(Alarm alarm, double seconds, 
     d.time_s = i * step_s;
     change(d, d.time_s);
     const AlarmLevel before = state.of(alarm);
-    state = step_alarms(state, d);
+    state = step_alarms(state, d, d.time_s);
     if (state.of(alarm) != before) out.emplace_back(d.time_s, state.of(alarm));
   }
   return out;
 }
 
 TEST(HudAlarms, ACalmDiveHasNone) {
-  EXPECT_FALSE(step_alarms({}, calm_dive()).any());
-  EXPECT_FALSE(step_alarms({}, stops_dive()).any());
+  EXPECT_FALSE(step_alarms({}, calm_dive(), 0.0).any());
+  EXPECT_FALSE(step_alarms({}, stops_dive(), 0.0).any());
 }
 
 TEST(HudAlarms, ANumberThatTremblesAtTheLimitDoesNotFlicker) {
@@ -79,19 +79,19 @@ TEST(HudAlarms, AnAscentEndsBelowFourFifthsOfTheRateThatItBeganWith) {
 TEST(HudAlarms, GasIsLowWhereItDoesNotReachForTheAscentAndGoneWhereNothingComes) {
   DiveData d = calm_dive();
   d.needed_l = 1401.0;
-  EXPECT_EQ(step_alarms({}, d).of(Alarm::kGas), AlarmLevel::kCaution);
+  EXPECT_EQ(step_alarms({}, d, d.time_s).of(Alarm::kGas), AlarmLevel::kCaution);
   d.out_of_gas = true;
-  EXPECT_EQ(step_alarms({}, d).of(Alarm::kGas), AlarmLevel::kDanger);
+  EXPECT_EQ(step_alarms({}, d, d.time_s).of(Alarm::kGas), AlarmLevel::kDanger);
 }
 
 TEST(HudAlarms, ADiverWithoutGasIsToldToChangeItOnlyWhereThereIsAnother) {
   DiveData d = alarmed_dive(Alarm::kGas, AlarmLevel::kDanger);
   Hud hud(LayoutKind::kMask, Units::kMetric, 140);
-  hud.update(d);
+  hud.update(d, d.time_s);
   EXPECT_EQ(hud.shown().advice.act.view(), "BUDDY'S GAS OR GO UP");
   const ImageU8 without = hud.picture();
   d.other_gas = true;
-  EXPECT_TRUE(hud.update(d));
+  EXPECT_TRUE(hud.update(d, d.time_s));
   EXPECT_EQ(hud.shown().advice.act.view(), "CHANGE GAS");
   EXPECT_NE(without.data, hud.picture().data);
 }
@@ -101,23 +101,73 @@ TEST(HudAlarms, WhatIsUnknownNeitherBeginsNorEndsAnAlarm) {
     const auto alarm = static_cast<Alarm>(i);
     DiveData on = alarmed_dive(alarm, AlarmLevel::kCaution);
     on.time_s = 0.0;
-    const AlarmState state = step_alarms({}, on);
+    const AlarmState state = step_alarms({}, on, on.time_s);
     ASSERT_TRUE(state.on(alarm)) << name_of(alarm);
     DiveData unknown;
     unknown.time_s = 100.0;
-    EXPECT_EQ(step_alarms(state, unknown).of(alarm), state.of(alarm)) << name_of(alarm);
-    EXPECT_FALSE(step_alarms({}, unknown).on(alarm)) << name_of(alarm);
+    EXPECT_EQ(step_alarms(state, unknown, unknown.time_s).of(alarm), state.of(alarm))
+        << name_of(alarm);
+    EXPECT_FALSE(step_alarms({}, unknown, unknown.time_s).on(alarm)) << name_of(alarm);
     DiveData calm = calm_dive();
     calm.time_s = 100.0;
-    EXPECT_FALSE(step_alarms(state, calm).on(alarm)) << name_of(alarm);
+    EXPECT_FALSE(step_alarms(state, calm, calm.time_s).on(alarm)) << name_of(alarm);
+  }
+}
+
+// Of a Hud while the scene's time goes from scene_from_s on at a speed: when the alarm was on, in
+// the viewer's seconds from the start, and how often the picture went over to a danger's other
+// colours.
+struct Watched {
+  double on_s = 0.0;
+  int flashes = 0;
+};
+Watched watch(double speed, double seconds, auto change) {
+  constexpr double kFrame_s = 1.0 / 50.0;
+  Hud hud(LayoutKind::kMask, Units::kMetric, 35);
+  Watched out;
+  bool lit = false;
+  for (int i = 0; i * kFrame_s < seconds; ++i) {
+    DiveData d = calm_dive();
+    d.time_s = 2000.0 + speed * i * kFrame_s;
+    change(d, i * kFrame_s);
+    hud.update(d, 7.0 + i * kFrame_s);
+    if (hud.alarms().any()) out.on_s += kFrame_s;
+    out.flashes += hud.shown().flash && !lit;
+    lit = hud.shown().flash;
+  }
+  return out;
+}
+
+TEST(HudAlarms, ADangerFlashesOnceASecondOfTheViewerAtAnySpeedOfTheScene) {
+  for (const double speed : {0.0, 0.1, 1.0, 10.0, 100.0}) {
+    const Watched seen = watch(speed, 20.0, [](DiveData& d, double) { d.out_of_gas = true; });
+    EXPECT_EQ(seen.flashes, 20) << speed;
+  }
+}
+
+TEST(HudAlarms, TheLeastFiveSecondsAreTheViewersAtAnySpeedOfTheScene) {
+  for (const double speed : {0.0, 0.1, 1.0, 10.0, 100.0}) {
+    const Watched seen = watch(speed, 20.0, [](DiveData& d, double t) { d.out_of_gas = t < 0.1; });
+    EXPECT_NEAR(seen.on_s, 5.0, 0.05) << speed;
   }
 }
 
 TEST(HudAlarms, AStateFromBeforeTheAlarmEndsIt) {
-  AlarmState state = step_alarms({}, alarmed_dive(Alarm::kOxygen, AlarmLevel::kDanger));
+  AlarmState state = step_alarms({}, alarmed_dive(Alarm::kOxygen, AlarmLevel::kDanger), 50.0);
   DiveData before = calm_dive();
   before.time_s = 10.0;
-  EXPECT_FALSE(step_alarms(state, before).any());
+  EXPECT_FALSE(step_alarms(state, before, 50.1).any());
+  before.time_s = 2000.1;
+  EXPECT_TRUE(step_alarms(state, before, 50.1).any());
+}
+
+// A server that answers again tells an earlier time than the one that the listener counted on.
+TEST(HudAlarms, AConnectionThatComesBackIsNoRestoredState) {
+  const AlarmState lost = step_alarms({}, alarmed_dive(Alarm::kLink, AlarmLevel::kDanger), 50.0);
+  DiveData back = calm_dive();
+  back.time_s = -1.0;
+  EXPECT_TRUE(step_alarms(lost, back, 51.0).on(Alarm::kLink));
+  EXPECT_FALSE(step_alarms(lost, back, 55.0).on(Alarm::kLink));
 }
 
 }  // namespace

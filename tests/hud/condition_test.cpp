@@ -24,12 +24,12 @@ DiveData slowed_dive() {
 }
 
 Shown shown(LayoutKind layout, const DiveData& data, Units units = Units::kMetric) {
-  return shown_of(layout, units, data, {}, {}, {});
+  return shown_of(layout, units, data, {}, {}, {}, data.time_s);
 }
 
 ImageU8 picture(const DiveData& data) {
   Hud hud(LayoutKind::kConsole, Units::kMetric, 720);
-  hud.update(data, {});
+  hud.update(data, data.time_s);
   return hud.picture();
 }
 

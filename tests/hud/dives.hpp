@@ -100,7 +100,8 @@ inline std::vector<NamedDive> all_dives() {
     for (const AlarmLevel level : {AlarmLevel::kCaution, AlarmLevel::kDanger}) {
       const auto alarm = static_cast<Alarm>(i);
       const DiveData data = alarmed_dive(alarm, level);
-      if (step_alarms({}, data).of(alarm) != level) continue;  // the alarm has one level only
+      if (step_alarms({}, data, data.time_s).of(alarm) != level)
+        continue;  // the alarm has one level only
       out.push_back({std::string(name_of(alarm)) + "_" + name_of(level), data});
     }
   return out;
@@ -114,7 +115,7 @@ inline void fill_minute(Hud& hud, const DiveData& last) {
     const double phase = 2.0 * kPi * d.time_s / 4.3;
     d.lungs_m3 = (3.0 + 0.8 * std::sin(phase)) * 1e-3;
     d.heart_bpm = 92.0 + 6.0 * std::sin(0.1 * d.time_s);
-    hud.observe(d);
+    hud.observe(d, d.time_s);
   }
 }
 

@@ -54,7 +54,7 @@ Hud hud_of(LayoutKind kind, const DiveData& data, double scale = 1.0,
   const auto height = static_cast<std::uint32_t>(std::lround(scale * layout_of(kind).height_px));
   Hud hud(kind, units, height);
   if (kind == LayoutKind::kConsole && std::isfinite(data.depth_m)) fill_minute(hud, data);
-  hud.update(data, about());
+  hud.update(data, data.time_s, about());
   return hud;
 }
 
@@ -251,14 +251,14 @@ TEST(HudLayout, WhatStaysTheSameIsNotDrawnAgainAndAllocatesNothing) {
   for (const Layout& layout : layouts()) {
     Hud hud(layout.kind, Units::kMetric, layout.height_px / 2);
     DiveData d = calm_dive();
-    EXPECT_TRUE(hud.update(d, about())) << layout.name;
+    EXPECT_TRUE(hud.update(d, d.time_s, about())) << layout.name;
     const std::size_t before = allocations;
     bool changed = false;
-    for (int i = 0; i < 100; ++i) changed |= hud.update(d, about());
+    for (int i = 0; i < 100; ++i) changed |= hud.update(d, d.time_s, about());
     EXPECT_FALSE(changed) << layout.name;
     EXPECT_EQ(allocations, before) << layout.name;
     d.depth_m += 0.1;
-    EXPECT_TRUE(hud.update(d, about())) << layout.name;
+    EXPECT_TRUE(hud.update(d, d.time_s, about())) << layout.name;
   }
   EXPECT_GT(allocations, 0u);
 }

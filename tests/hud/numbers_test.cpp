@@ -119,7 +119,7 @@ TEST(HudNumbers, TheStopIsOnTheDepthsScaleAndNeverAboveTheCeiling) {
   for (const Units units : {Units::kMetric, Units::kImperial})
     for (double depth_m = 2.5; depth_m < 3.5; depth_m += 0.001) {
       d.depth_m = depth_m;
-      const Shown shown = shown_of(LayoutKind::kCorner, units, d, {}, {}, {});
+      const Shown shown = shown_of(LayoutKind::kCorner, units, d, {}, {}, {}, d.time_s);
       if (shown.depth == shown.stop) {
         EXPECT_GE(depth_m, d.stop_m) << shown.depth.view();
       }
@@ -127,7 +127,7 @@ TEST(HudNumbers, TheStopIsOnTheDepthsScaleAndNeverAboveTheCeiling) {
                 std::stod(std::string(shown.ceiling.view())));
     }
   d.ceiling_m = 4.0;  // while the plan for the stop is older
-  const Shown shown = shown_of(LayoutKind::kCorner, Units::kMetric, d, {}, {}, {});
+  const Shown shown = shown_of(LayoutKind::kCorner, Units::kMetric, d, {}, {}, {}, d.time_s);
   EXPECT_GE(std::stod(std::string(shown.stop.view())),
             std::stod(std::string(shown.ceiling.view())));
 }
@@ -135,7 +135,7 @@ TEST(HudNumbers, TheStopIsOnTheDepthsScaleAndNeverAboveTheCeiling) {
 TEST(HudNumbers, TheDeepestPlaceIsNeverAboveTheDepth) {
   DiveData d = calm_dive();
   d.depth_m = 0.3, d.deepest_m = 0.0;  // the dive has not begun
-  const Shown shown = shown_of(LayoutKind::kWrist, Units::kMetric, d, {}, {}, {});
+  const Shown shown = shown_of(LayoutKind::kWrist, Units::kMetric, d, {}, {}, {}, d.time_s);
   EXPECT_EQ(shown.deepest.view(), "0.3");
 }
 
@@ -150,7 +150,7 @@ TEST(HudNumbers, TheGasLastsByTheBreathingOfAMinuteNotByABreath) {
     d.tank_pa = (50.0 + 150.0 * left_min / 58.0) * 1e5;
     const double breath = 0.1 * std::sin(1.3 * std::floor(d.time_s / 4.0));
     d.gas_min = left_min / (1.0 + breath);
-    hud.update(d);
+    hud.update(d, d.time_s);
     if (d.time_s < 180.0) continue;  // two minutes follow
     const double off = std::stod(std::string(hud.shown().gas_min.view())) - left_min;
     least = std::min(least, off), most = std::max(most, off);
@@ -160,10 +160,10 @@ TEST(HudNumbers, TheGasLastsByTheBreathingOfAMinuteNotByABreath) {
   // At twice the pressure it lasts half as long at once, and nothing is nothing at once.
   const double before = std::stod(std::string(hud.shown().gas_min.view()));
   d.depth_m = 2.0 * d.depth_m + d.surface_bar / d.bar_per_m, d.gas_min *= 0.5, d.time_s += 0.2;
-  hud.update(d);
+  hud.update(d, d.time_s);
   EXPECT_NEAR(std::stod(std::string(hud.shown().gas_min.view())), 0.5 * before, 1.0);
   d.gas_min = 0.0, d.time_s += 0.2;
-  hud.update(d);
+  hud.update(d, d.time_s);
   EXPECT_EQ(hud.shown().gas_min.view(), "0");
 }
 
@@ -180,7 +180,7 @@ TEST(HudNumbers, AnExtremeStateShowsDashesAndAnEmptyTankZero) {
   d.depth_m = d.no_stop_min = d.to_surface_min = d.heading_rad = kNan;
   d.tank_pa = d.gas_min = 0.0;
   d.dive_min = 1e9;
-  const Shown shown = shown_of(LayoutKind::kConsole, Units::kMetric, d, {}, {}, {});
+  const Shown shown = shown_of(LayoutKind::kConsole, Units::kMetric, d, {}, {}, {}, d.time_s);
   EXPECT_EQ(shown.depth.view(), "--.-");
   EXPECT_EQ(shown.no_stop.view(), "--");
   EXPECT_EQ(shown.to_surface.view(), "--");

@@ -85,7 +85,7 @@ std::vector<Stretch> shown(const std::vector<DiveData>& record, Alarm alarm) {
   Hud hud(LayoutKind::kMask, Units::kMetric, 70);
   bool before = false;
   for (const DiveData& d : record) {
-    hud.observe(d);
+    hud.observe(d, d.time_s);
     const bool now = hud.alarms().on(alarm);
     if (now && !before) out.push_back({d.time_s, 1e9});
     if (!now && before) out.back().to_s = d.time_s;
@@ -131,7 +131,7 @@ TEST(HudWalk, NothingToBreatheIsADangerForAtLeastFiveSeconds) {
   double from_s = 0.0, to_s = 0.0;
   for (const DiveData& d : record) {
     const bool before = hud.alarms().of(Alarm::kGas) == AlarmLevel::kDanger;
-    hud.observe(d);
+    hud.observe(d, d.time_s);
     const bool now = hud.alarms().of(Alarm::kGas) == AlarmLevel::kDanger;
     if (now && !before) from_s = d.time_s;
     if (before && !now) to_s = d.time_s;
@@ -148,7 +148,7 @@ TEST(HudWalk, TheNumbersShownAreThoseOfTheState) {
   };
   int stops = 0, rows = 0;
   for (const DiveData& d : recorded_dive()) {
-    const Shown s = shown_of(LayoutKind::kWrist, Units::kMetric, d, {}, {}, {});
+    const Shown s = shown_of(LayoutKind::kWrist, Units::kMetric, d, {}, {}, {}, d.time_s);
     const double gauge_m = d.depth_m * 1025.0 / 1020.0;
     EXPECT_NEAR(number(s.depth), gauge_m, 0.05 + 1e-9);
     EXPECT_EQ(number(s.tank), std::floor(1e-5 * d.tank_pa));

@@ -49,8 +49,9 @@ Status show_frame(OverlaySession& overlay, const xr::DisplayFrame& frame, DiveHu
   std::vector<xr::Layer> layers;
   const Pose head = frame.world_from_head.value_or(Pose{});
   const auto draw = [&]() -> Status {
-    NERITIC_TRY_STATUS(
-        hud.declare(graph, {kNoView, true, {}, head, frame.tracked.hands[0], true}, layers));
+    HudView seen{kNoView, true, {}, head, frame.tracked.hands[0], true};
+    seen.seen_s = 1e-9 * static_cast<double>(frame.display_at_ns.value_or(now_ns()));
+    NERITIC_TRY_STATUS(hud.declare(graph, seen, layers));
     NERITIC_TRY([[maybe_unused]] const auto picture, overlay.headset->declare(graph, head, layers));
     NERITIC_TRY(gpu::Commands* const commands, overlay.frames->begin());
     NERITIC_TRY([[maybe_unused]] const auto plan, overlay.executor->run(graph, *commands));

@@ -162,7 +162,7 @@ HudRatePoint hud_at(double rate_hz) {
       data.dive_min = time_s / 60.0;
       data.ascent_m_min = 60.0 * kRise_m_s;
       const std::clock_t begin = std::clock();
-      instrument.update(data);
+      instrument.update(data, data.time_s);
       spent += static_cast<double>(std::clock() - begin);
     }
     out.late_m = std::max(out.late_m, std::abs(shown_m - depth_m));

@@ -100,7 +100,7 @@ TEST(RemoteInstrumentsTest, NumbersAreTheStatesAndAServerThatComesBackIsReadAgai
   EXPECT_TRUE(std::isnan(lost.data.depth_m));
   EXPECT_GT(lost.data.time_s, near.data.time_s);
   EXPECT_EQ(lost.streams.front().health, hud::Health::kLost);
-  EXPECT_TRUE(hud::step_alarms({}, lost.data).on(hud::Alarm::kLink));
+  EXPECT_TRUE(hud::step_alarms({}, lost.data, lost.data.time_s).on(hud::Alarm::kLink));
 
   server = std::make_unique<ServedWorld>(address.port, 960);
   ASSERT_TRUE(comes([&] { return remote.read().data.time_s == server->wanted().time_s; }));
@@ -140,7 +140,7 @@ TEST(InstrumentNumbers, WhatCannotBeIsNotKnown) {
   EXPECT_TRUE(diver::is_mix(data.gas));
   for (const hud::Layout& layout : hud::layouts()) {
     hud::Hud hud(layout.kind, hud::Units::kMetric, layout.height_px / 4);
-    EXPECT_TRUE(hud.update(data)) << layout.name;
+    EXPECT_TRUE(hud.update(data, data.time_s)) << layout.name;
   }
 }
 

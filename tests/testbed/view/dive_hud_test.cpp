@@ -135,11 +135,13 @@ class DiveHudTest : public test::GpuTest {
     executor_.reset();
     test::GpuTest::TearDown();
   }
-  // One frame; gives the names of its passes.
-  std::vector<std::string> frame(DiveHud& hud) {
+  // One frame that is seen at seen_s; gives the names of its passes.
+  std::vector<std::string> frame(DiveHud& hud, double seen_s = 0.0) {
     graph::FrameGraph graph;
     std::vector<xr::Layer> layers;
-    EXPECT_TRUE(hud.declare(graph, {group_, false, {}, {}}, layers).ok());
+    HudView view{group_, false, {}, {}};
+    view.seen_s = seen_s;
+    EXPECT_TRUE(hud.declare(graph, view, layers).ok());
     EXPECT_TRUE(display_->declare(graph, {}, layers).ok());
     gpu::Commands* commands = frames_->begin().value();
     EXPECT_TRUE(executor_->run(graph, *commands).ok());
@@ -167,7 +169,7 @@ TEST_F(DiveHudTest, LiesInTheWindowTexelOnPixel) {
   const auto pixels = shown();
   const std::uint32_t height = 225;  // 0.75 of 300, which is more than 0.36 of 480
   hud::Hud alone(hud::LayoutKind::kCorner, hud::Units::kMetric, height);
-  alone.update(instrument_data(physics_->world(), 0, physics_->shown_snapshot()));
+  alone.update(instrument_data(physics_->world(), 0, physics_->shown_snapshot()), 0.0);
   const ImageU8& picture = alone.picture();
   const auto left = static_cast<std::uint32_t>(std::round(0.98 * (kWidth - picture.width)));
   const auto top = static_cast<std::uint32_t>(std::round(0.96 * (kHeight - picture.height)));
@@ -188,13 +190,26 @@ TEST_F(DiveHudTest, LiesInTheWindowTexelOnPixel) {
 
 TEST_F(DiveHudTest, APictureIsUploadedOnlyWhereItChanged) {
   DiveHud hud(device(), *frames_, *physics_, {.layouts = {hud::LayoutKind::kMask}});
-  const auto uploads = [&] { return std::ranges::count(frame(hud), "hud mask"); };
-  EXPECT_EQ(uploads(), 1);
-  EXPECT_EQ(uploads(), 0);  // the simulation stands still
+  const auto uploads = [&](double seen_s) {
+    return std::ranges::count(frame(hud, seen_s), "hud mask");
+  };
+  EXPECT_EQ(uploads(0.0), 1);
+  EXPECT_EQ(uploads(1.0), 0);  // the simulation stands still
   const auto before = shown();
   physics_->follow(0, 4.5);
-  EXPECT_EQ(uploads(), 1);  // the dive's time at least
+  EXPECT_EQ(uploads(2.0), 1);  // the dive's time at least
   EXPECT_NE(shown(), before);
+}
+
+// A dive at 20 times its pace: new numbers each fifth of a second of the viewer, not more often.
+TEST_F(DiveHudTest, NumbersChangeAtTheViewersPaceWhereTheSceneRunsFast) {
+  DiveHud hud(device(), *frames_, *physics_, {.layouts = {hud::LayoutKind::kMask}});
+  std::ptrdiff_t uploads = 0;
+  for (int i = 0; i < 50; ++i) {
+    physics_->follow(0, 1.5 + 0.4 * i);
+    uploads += std::ranges::count(frame(hud, 0.02 * i), "hud mask");
+  }
+  EXPECT_EQ(uploads, 5);
 }
 
 TEST_F(DiveHudTest, TheKeyShowsEachAloneThenNoneThenTheChosenOnes) {
