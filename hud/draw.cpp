@@ -2,6 +2,8 @@
 // is about changes its plate too.
 #include "hud/draw.hpp"
 
+#include <algorithm>
+
 namespace neritic::hud {
 namespace {
 
@@ -47,11 +49,29 @@ void draw_ceiling_or_deepest(Painter& p, const Box& box, const Shown& s, double 
     p.cell({box, "DEEPEST", s.deepest.view(), unit, size, label_size});
 }
 
+void draw_jacket_cells(Painter& p, const Box& gas, const Box& lift, const Shown& s, double size,
+                       double label_size) {
+  const UnitNames unit = unit_names(s.units);
+  p.cell({gas, "JACKET", s.jacket.view(), unit.volume, size, label_size});
+  p.cell({lift, "LIFT", s.lift.view(), unit.weight, size, label_size});
+}
+
+void draw_jacket_row(Painter& p, const Box& box, const Shown& s, double size, double label_size) {
+  const double cell = 0.19 * box.w, keys = box.x + 2.0 * cell + 6.0, gap = 4.0;
+  draw_jacket_cells(p, {box.x, box.y, cell, box.h}, {box.x + cell, box.y, cell, box.h}, s, size,
+                    label_size);
+  const double w = (box.right() - keys - 2.0 * gap) / 3.0, h = 0.46 * box.h;
+  for (std::size_t i = 0; i < std::size(kJacketKeys); ++i)
+    p.key({keys + static_cast<double>(i) * (w + gap), box.y + 4.0, w, h}, kJacketKeys[i].word,
+          (s.buttons & kJacketKeys[i].bit) != 0, label_size);
+  p.level({keys, box.y + h + 10.0, box.right() - keys, box.h - h - 16.0}, s.jacket_step);
+}
+
 void draw_wrist(Painter& p, const Shown& s) {
   const UnitNames unit = unit_names(s.units);
   constexpr Color kCase{0.16f, 0.17f, 0.18f}, kScreen{0.005f, 0.012f, 0.018f};
-  p.plate({0.0, 0.0, 480.0, 400.0}, 34.0, kCase);
-  p.plate({8.0, 8.0, 464.0, 384.0}, 28.0, kScreen);
+  p.plate({0.0, 0.0, 480.0, 460.0}, 34.0, kCase);
+  p.plate({8.0, 8.0, 464.0, 444.0}, 28.0, kScreen);
   p.cell({{18.0, 20.0, 234.0, 122.0},
           with_unit("DEPTH", unit.depth).view(),
           s.depth.view(),
@@ -66,14 +86,14 @@ void draw_wrist(Painter& p, const Shown& s) {
   draw_ceiling_or_deepest(p, {170.0, 154.0, 136.0, 74.0}, s, 30.0, 13.0);
   p.cell({{310.0, 154.0, 152.0, 74.0}, "TO SURFACE", s.to_surface.view(), "min", 30.0, 13.0});
   p.line(20.0, 233.0, 460.0, 233.0, 1.5, kFaint);
-  p.cell({{18.0, 238.0, 150.0, 72.0},
+  p.cell({{18.0, 238.0, 132.0, 72.0},
           "TANK",
           s.tank.view(),
           unit.pressure,
           30.0,
           13.0,
           tone_of(s, Alarm::kGas)});
-  p.cell({{170.0, 238.0, 84.0, 72.0}, "LASTS", s.gas_min.view(), "min", 22.0, 13.0});
+  p.cell({{152.0, 238.0, 100.0, 72.0}, "LASTS", s.gas_min.view(), "min", 22.0, 13.0});
   p.cell({{254.0, 238.0, 78.0, 72.0},
           "pO2",
           s.oxygen.view(),
@@ -82,24 +102,26 @@ void draw_wrist(Painter& p, const Shown& s) {
           13.0,
           tone_of(s, Alarm::kOxygen)});
   p.cell({{334.0, 238.0, 128.0, 72.0},
-          FixedText::of("GAS  MOD {}", s.mod.view()).view(),
+          FixedText::of("MOD {} {}", s.mod.view(), unit.depth).view(),
           s.gas.view(),
           "",
           22.0,
           12.0});
   p.line(20.0, 315.0, 460.0, 315.0, 1.5, kFaint);
+  draw_jacket_row(p, {18.0, 318.0, 442.0, 56.0}, s, 20.0, 12.0);
+  p.line(20.0, 379.0, 460.0, 379.0, 1.5, kFaint);
   if (any_alarm(s)) {
-    p.alarm_band({18.0, 320.0, 444.0, 62.0}, s, 20.0);
+    p.alarm_band({18.0, 384.0, 444.0, 60.0}, s, 20.0);
     return;
   }
-  p.tissues({28.0, 330.0, 150.0, 46.0}, s);
-  p.cell({{184.0, 318.0, 70.0, 64.0}, "CNS", s.cns.view(), "%", 18.0, 13.0});
-  p.compass({262.0, 330.0, 190.0, 48.0}, s, 14.0);
+  p.tissues({28.0, 392.0, 150.0, 46.0}, s);
+  p.cell({{184.0, 380.0, 70.0, 64.0}, "CNS", s.cns.view(), "%", 18.0, 13.0});
+  p.compass({262.0, 392.0, 190.0, 46.0}, s, 14.0);
 }
 
 void draw_corner(Painter& p, const Shown& s) {
   const UnitNames unit = unit_names(s.units);
-  p.plate({0.0, 0.0, 400.0, any_alarm(s) ? 300.0 : 248.0}, 18.0, kPlate);
+  p.plate({0.0, 0.0, 400.0, any_alarm(s) ? 358.0 : 304.0}, 18.0, kPlate);
   p.cell({{10.0, 8.0, 188.0, 108.0},
           with_unit("DEPTH", unit.depth).view(),
           s.depth.view(),
@@ -108,7 +130,12 @@ void draw_corner(Painter& p, const Shown& s) {
           13.0,
           depth_tone(s)});
   p.ascent_bar({206.0, 18.0, 30.0, 94.0}, s, 14.0);
-  draw_limit(p, {248.0, 8.0, 144.0, 108.0}, s, s.in_stops ? 34.0 : 46.0, 12.0);
+  if (s.in_stops) {
+    draw_limit(p, {248.0, 8.0, 144.0, 60.0}, s, 28.0, 12.0);
+    draw_ceiling_or_deepest(p, {248.0, 71.0, 144.0, 45.0}, s, 17.0, 12.0);
+  } else {
+    draw_limit(p, {248.0, 8.0, 144.0, 108.0}, s, 46.0, 12.0);
+  }
   p.line(14.0, 122.0, 386.0, 122.0, 1.5, kFaint);
   p.cell({{10.0, 126.0, 130.0, 62.0}, "TIME", s.dive_time.view(), "", 25.0, 12.0});
   p.cell({{142.0, 126.0, 122.0, 62.0},
@@ -120,27 +147,55 @@ void draw_corner(Painter& p, const Shown& s) {
           tone_of(s, Alarm::kGas)});
   p.cell({{266.0, 126.0, 126.0, 62.0}, "TO SURFACE", s.to_surface.view(), "min", 25.0, 12.0});
   p.cell({{10.0, 190.0, 130.0, 50.0},
-          FixedText::of("GAS  MOD {}", s.mod.view()).view(),
+          FixedText::of("MOD {} {}", s.mod.view(), unit.depth).view(),
           s.gas.view(),
           "",
           17.0,
           12.0});
   p.cell({{142.0, 190.0, 122.0, 50.0}, "LASTS", s.gas_min.view(), "min", 17.0, 12.0});
-  p.cell({{266.0, 190.0, 70.0, 50.0},
+  p.cell({{266.0, 190.0, 62.0, 50.0},
           "pO2",
           s.oxygen.view(),
           "",
           17.0,
           12.0,
           tone_of(s, Alarm::kOxygen)});
-  p.cell({{336.0, 190.0, 58.0, 50.0}, "CNS", s.cns.view(), "%", 17.0, 12.0});
-  if (any_alarm(s)) p.alarm_band({8.0, 244.0, 384.0, 50.0}, s, 16.0);
+  p.cell({{328.0, 190.0, 66.0, 50.0}, "CNS", s.cns.view(), "%", 17.0, 12.0});
+  p.line(14.0, 244.0, 386.0, 244.0, 1.5, kFaint);
+  draw_jacket_row(p, {10.0, 247.0, 380.0, 50.0}, s, 17.0, 10.0);
+  if (any_alarm(s)) p.alarm_band({8.0, 301.0, 384.0, 50.0}, s, 16.0);
 }
+
+namespace {
+
+// Over the mask's row: on the left the ceiling while stops are owed, on the right the jacket with
+// the keys that are pressed.
+void draw_over_mask(Painter& p, const Shown& s) {
+  constexpr Box kCeiling{0.0, 0.0, 150.0, 48.0}, kJacket{718.0, 0.0, 242.0, 48.0};
+  if (s.in_stops) {
+    p.plate(kCeiling, 12.0, kPlate);
+    draw_ceiling_or_deepest(p, {8.0, 2.0, 134.0, 44.0}, s, 17.0, 10.0);
+  }
+  p.plate(kJacket, 12.0, kPlate);
+  draw_jacket_cells(p, {724.0, 2.0, 74.0, 44.0}, {796.0, 2.0, 80.0, 44.0}, s, 16.0, 10.0);
+  const auto pressed = [&](const JacketKey& key) { return (s.buttons & key.bit) != 0; };
+  const auto count = static_cast<double>(std::ranges::count_if(kJacketKeys, pressed));
+  const double gap = 2.0, h = std::min(22.0, (40.0 - gap * (count - 1.0)) / count);
+  double y = 24.0 - 0.5 * (count * h + gap * (count - 1.0));
+  for (const JacketKey& key : kJacketKeys) {
+    if (!pressed(key)) continue;
+    p.key({878.0, y, 76.0, h}, key.word, true, std::min(10.0, h - 3.5));
+    y += h + gap;
+  }
+}
+
+}  // namespace
 
 // Along the lower edge of the mask: one row to glance at, the alarm above it.
 void draw_mask(Painter& p, const Shown& s) {
   const UnitNames unit = unit_names(s.units);
   const double top = 52.0, h = 88.0;
+  draw_over_mask(p, s);
   p.plate({0.0, top, 960.0, h}, 16.0, kPlate);
   p.cell({{12.0, top, 186.0, h},
           with_unit("DEPTH", unit.depth).view(),

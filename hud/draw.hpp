@@ -2,6 +2,7 @@
 // One thread.
 #pragma once
 
+#include "diver/jacket.hpp"
 #include "hud/painter.hpp"
 
 namespace neritic::hud {
@@ -13,6 +14,20 @@ void draw_console(Painter& painter, const Shown& shown);  // draw_console.cpp
 // The plates of the console, layout units; that of the alarms' band also while there is no alarm.
 std::vector<Box> console_plates(const Shown& shown);
 void draw(LayoutKind layout, Painter& painter, const Shown& shown);
+
+// The jacket's buttons, as a diver sees which are pressed.
+struct JacketKey {
+  std::uint64_t bit;
+  const char* word;
+};
+inline constexpr JacketKey kJacketKeys[] = {
+    {diver::kInflate, "INFLATE"}, {diver::kDeflate, "DEFLATE"}, {diver::kDump, "DUMP"}};
+// Two cells: the gas in the jacket, its lift.
+void draw_jacket_cells(Painter& painter, const Box& gas, const Box& lift, const Shown& shown,
+                       double size, double label_size);
+// These, the keys, and under them how full the jacket is.
+void draw_jacket_row(Painter& painter, const Box& box, const Shown& shown, double size,
+                     double label_size);
 
 // No-stop time, or the stop with its minutes.
 void draw_limit(Painter& painter, const Box& box, const Shown& shown, double size,

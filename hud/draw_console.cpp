@@ -1,6 +1,5 @@
 // The operator's console: the diver on the left, streams and sonar on the right, heart and breath
 // below, and the view itself in the middle with the place that the diver looks at.
-#include "diver/jacket.hpp"
 #include "hud/draw.hpp"
 
 namespace neritic::hud {
@@ -42,22 +41,9 @@ void draw_jacket(Painter& p, const Box& box, const Shown& s) {
       {{box.x + 176.0, box.y + 24.0, 118.0, 52.0}, "LIFT", s.lift.view(), unit.weight, 20.0, 12.0});
   const char* net = !s.net_known ? "NET" : s.sinks ? "SINKS" : "FLOATS";
   p.cell({{box.x + 60.0, box.y + 78.0, 112.0, 52.0}, net, s.net.view(), unit.weight, 20.0, 12.0});
-  struct Key {
-    std::uint64_t bit;
-    const char* word;
-  };
-  constexpr Key kKeys[] = {
-      {diver::kInflate, "INFLATE"}, {diver::kDeflate, "DEFLATE"}, {diver::kDump, "DUMP"}};
   double y = box.y + 82.0;
-  for (const Key& key : kKeys) {
-    const bool pressed = (s.buttons & key.bit) != 0;
-    const Box at{box.x + 182.0, y, 104.0, 20.0};
-    if (pressed)
-      p.plate(at, 5.0, kInk);
-    else
-      p.outline(at, 1.5, kFaint);
-    p.text(at.x + 0.5 * at.w, at.bottom() - 4.5, 11.0, key.word, pressed ? kBlack : kLabel,
-           Align::kCenter, pressed ? Face::kBold : Face::kRegular);
+  for (const JacketKey& key : kJacketKeys) {
+    p.key({box.x + 182.0, y, 104.0, 20.0}, key.word, (s.buttons & key.bit) != 0, 11.0);
     y += 24.0;
   }
 }
@@ -87,7 +73,7 @@ void draw_diver(Painter& p, const Shown& s) {
           tone_of(s, Alarm::kGas)});
   p.cell({{right, 288.0, 142.0, 62.0}, "LASTS", s.gas_min.view(), "min", 24.0, 12.0});
   p.cell({{x + 6.0, 354.0, 128.0, 54.0},
-          FixedText::of("GAS  MOD {}", s.mod.view()).view(),
+          FixedText::of("MOD {} {}", s.mod.view(), unit.depth).view(),
           s.gas.view(),
           "",
           19.0,

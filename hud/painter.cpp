@@ -121,6 +121,24 @@ void Painter::cell(const Cell& c) {
     text(c.box.x + kPad + w + kUnitGap, base, unit_size, c.unit, alarmed ? kBlack : kLabel);
 }
 
+void Painter::key(const Box& box, std::string_view word, bool pressed, double size) {
+  if (pressed)
+    plate(box, 5.0, kInk);
+  else
+    outline(box, 1.5, kFaint);
+  const Face face = pressed ? Face::kBold : Face::kRegular;
+  const double room = box.w - 6.0, wide = width(size, word, face);
+  const double fitted = wide > room ? size * room / wide : size;
+  text(box.x + 0.5 * box.w, box.y + 0.5 * (box.h + fitted), fitted, word, pressed ? kBlack : kLabel,
+       Align::kCenter, face);
+}
+
+void Painter::level(const Box& box, std::uint8_t step) {
+  outline(box, 1.5, kFaint);
+  if (step == kNoStep || step == 0) return;
+  fill({box.x + 3.0, box.y + 3.0, (box.w - 6.0) * step / kBarSteps, box.h - 6.0}, kLabel);
+}
+
 void Painter::ascent_bar(const Box& box, const Shown& shown, double size) {
   constexpr double kGap = 3.0;
   const double below = size + 12.0;

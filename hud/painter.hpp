@@ -62,6 +62,11 @@ class Painter {
   };
   void cell(const Cell& cell);
 
+  // A button: its word in a frame, on a bright plate while it is pressed.
+  void key(const Box& box, std::string_view word, bool pressed, double size);
+  // How full something is, from the left, in kBarSteps; kNoStep: not known.
+  void level(const Box& box, std::uint8_t step);
+
   // The signed rate as begun steps, from the bottom up, with its number below.
   void ascent_bar(const Box& box, const Shown& shown, double size);
   void tissues(const Box& box, const Shown& shown);

@@ -114,15 +114,18 @@ ShownCondition condition_of(const DiveData& d, Units units) {
   return out;
 }
 
-void show_operator(const DiveData& d, Units units, const Minute& minute, const OperatorData& about,
-                   Shown& out) {
+void show_jacket(const DiveData& d, Units units, Shown& out) {
   out.jacket = litres_text(d.jacket_m3, units);
   out.jacket_step = bar_step(d.jacket_full_m3 > 0.0 ? d.jacket_m3 / d.jacket_full_m3 : kUnknown);
   out.lift = weight_text(d.lift_n, units);
+  out.buttons = d.buttons;
+}
+
+void show_operator(const DiveData& d, Units units, const Minute& minute, const OperatorData& about,
+                   Shown& out) {
   out.net = weight_text(d.net_weight_n, units);
   out.net_known = std::isfinite(d.net_weight_n);
   out.sinks = d.net_weight_n > 0.0;
-  out.buttons = d.buttons;
   out.condition = condition_of(d, units);
   out.heart = beats_text(d.heart_bpm);
   out.breath = beats_text(d.breath_bpm);
@@ -151,6 +154,7 @@ Shown shown_of(LayoutKind layout, Units units, const DiveData& data, const Alarm
   show_depths(data, units, out);
   show_ascent(data, units, out);
   show_gas(data, units, out);
+  show_jacket(data, units, out);
   if (layout == LayoutKind::kWrist || layout == LayoutKind::kConsole)
     show_compass_and_tissues(data, out);
   if (layout == LayoutKind::kMask) out.heading = heading_text(data.heading_rad);

@@ -104,6 +104,14 @@ inline std::vector<NamedDive> all_dives() {
         continue;  // the alarm has one level only
       out.push_back({std::string(name_of(alarm)) + "_" + name_of(level), data});
     }
+  // At a stop, where up is no way out.
+  DiveData at_stop = stops_dive();
+  at_stop.depth_m = 9.3, at_stop.tank_pa = 41.0e5, at_stop.gas_min = 0.0;
+  at_stop.buttons = diver::kDeflate;
+  out.push_back({"gas low at a stop", at_stop});
+  at_stop.tank_pa = 1.0e5, at_stop.out_of_gas = true, at_stop.po2_bar = 1.71;
+  at_stop.buttons = diver::kInflate | diver::kDeflate | diver::kDump;
+  out.push_back({"no gas and much oxygen at a stop", at_stop});
   return out;
 }
 

@@ -127,9 +127,7 @@ TEST(HudLayout, EveryTextIsLargeEnoughToBeRead) {
     EXPECT_GE(px_deg, kLeastPixels_deg) << layout.name;
     EXPECT_NEAR(layout.size_m.x / layout.size_m.y, double(layout.width_px) / layout.height_px, 0.02)
         << layout.name;
-    std::vector<NamedDive> dives = all_dives();
-    dives.push_back({"wordy", wordy_dive()});
-    for (const NamedDive& dive : dives) {
+    for (const NamedDive& dive : tested_dives()) {
       const Hud hud = hud_of(layout.kind, dive.data);
       ASSERT_GT(hud.marks().size(), 12u);
       for (const TextMark& mark : hud.marks())
@@ -261,6 +259,25 @@ TEST(HudLayout, WhatStaysTheSameIsNotDrawnAgainAndAllocatesNothing) {
     EXPECT_TRUE(hud.update(d, d.time_s, about())) << layout.name;
   }
   EXPECT_GT(allocations, 0u);
+}
+
+// A diver looks for the jacket on each layout: its gas, its lift and each button make another
+// picture; so does the ceiling while stops are owed.
+TEST(HudLayout, EachShowsTheJacketAndTheCeiling) {
+  for (const Layout& layout : layouts()) {
+    const auto differs = [&](const DiveData& from, auto change) {
+      DiveData to = from;
+      change(to);
+      return hud_of(layout.kind, from).picture().data != hud_of(layout.kind, to).picture().data;
+    };
+    const DiveData calm = calm_dive(), stops = stops_dive();
+    EXPECT_TRUE(differs(calm, [](DiveData& d) { d.jacket_m3 += 1e-4; })) << layout.name;
+    EXPECT_TRUE(differs(calm, [](DiveData& d) { d.lift_n += 1.0; })) << layout.name;
+    EXPECT_TRUE(differs(calm, [](DiveData& d) { d.buttons = 0; })) << layout.name;
+    EXPECT_TRUE(differs(calm, [](DiveData& d) { d.buttons = diver::kDeflate; })) << layout.name;
+    EXPECT_TRUE(differs(calm, [](DiveData& d) { d.buttons |= diver::kDump; })) << layout.name;
+    EXPECT_TRUE(differs(stops, [](DiveData& d) { d.ceiling_m += 0.2; })) << layout.name;
+  }
 }
 
 TEST(HudLayout, AScaleDrawsTheSamePictureFiner) {

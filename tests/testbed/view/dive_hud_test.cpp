@@ -167,7 +167,7 @@ TEST_F(DiveHudTest, LiesInTheWindowTexelOnPixel) {
   DiveHud hud(device(), *frames_, *physics_, {.layouts = {hud::LayoutKind::kCorner}});
   frame(hud);
   const auto pixels = shown();
-  const std::uint32_t height = 225;  // 0.75 of 300, which is more than 0.36 of 480
+  const std::uint32_t height = 269;  // 0.75 of 358, which is more than 0.43 of 480
   hud::Hud alone(hud::LayoutKind::kCorner, hud::Units::kMetric, height);
   alone.update(instrument_data(physics_->world(), 0, physics_->shown_snapshot()), 0.0);
   const ImageU8& picture = alone.picture();
