@@ -72,14 +72,14 @@ void draw_wrist(Painter& p, const Shown& s) {
   constexpr Color kCase{0.16f, 0.17f, 0.18f}, kScreen{0.005f, 0.012f, 0.018f};
   p.plate({0.0, 0.0, 480.0, 460.0}, 34.0, kCase);
   p.plate({8.0, 8.0, 464.0, 444.0}, 28.0, kScreen);
-  p.cell({{18.0, 20.0, 234.0, 122.0},
+  p.cell({{18.0, 20.0, 226.0, 122.0},
           with_unit("DEPTH", unit.depth).view(),
           s.depth.view(),
           "",
           66.0,
           14.0,
           depth_tone(s)});
-  p.ascent_bar({262.0, 28.0, 34.0, 108.0}, s, 16.0);
+  p.ascent_bar({257.0, 28.0, 41.0, 108.0}, s, 16.0, 12.0);
   draw_limit(p, {310.0, 20.0, 152.0, 122.0}, s, s.in_stops ? 40.0 : 54.0, s.in_stops ? 12.0 : 14.0);
   p.line(20.0, 149.0, 460.0, 149.0, 1.5, kFaint);
   p.cell({{18.0, 154.0, 150.0, 74.0}, "TIME", s.dive_time.view(), "", 30.0, 13.0});
@@ -95,7 +95,7 @@ void draw_wrist(Painter& p, const Shown& s) {
           tone_of(s, Alarm::kGas)});
   p.cell({{152.0, 238.0, 100.0, 72.0}, "LASTS", s.gas_min.view(), "min", 22.0, 13.0});
   p.cell({{254.0, 238.0, 78.0, 72.0},
-          "pO2",
+          "pO2 bar",
           s.oxygen.view(),
           "",
           22.0,
@@ -129,7 +129,7 @@ void draw_corner(Painter& p, const Shown& s) {
           55.0,
           13.0,
           depth_tone(s)});
-  p.ascent_bar({206.0, 18.0, 30.0, 94.0}, s, 14.0);
+  p.ascent_bar({207.0, 16.0, 31.0, 96.0}, s, 14.0, 10.0);
   if (s.in_stops) {
     draw_limit(p, {248.0, 8.0, 144.0, 60.0}, s, 28.0, 12.0);
     draw_ceiling_or_deepest(p, {248.0, 71.0, 144.0, 45.0}, s, 17.0, 12.0);
@@ -154,7 +154,7 @@ void draw_corner(Painter& p, const Shown& s) {
           12.0});
   p.cell({{142.0, 190.0, 122.0, 50.0}, "LASTS", s.gas_min.view(), "min", 17.0, 12.0});
   p.cell({{266.0, 190.0, 62.0, 50.0},
-          "pO2",
+          "pO2 bar",
           s.oxygen.view(),
           "",
           17.0,
@@ -204,25 +204,25 @@ void draw_mask(Painter& p, const Shown& s) {
           46.0,
           12.0,
           depth_tone(s)});
-  p.ascent_bar({208.0, top + 8.0, 26.0, h - 16.0}, s, 13.0);
+  p.ascent_bar({206.0, top + 8.0, 28.0, h - 16.0}, s, 13.0, 9.0);
   draw_limit(p, {246.0, top, 156.0, h}, s, s.in_stops ? 36.0 : 46.0, 12.0);
   p.cell({{408.0, top, 118.0, h}, "TIME", s.dive_time.view(), "", 28.0, 12.0});
   p.cell({{530.0, top, 116.0, h}, "TO SURFACE", s.to_surface.view(), "min", 28.0, 12.0});
   p.cell({{650.0, top, 144.0, h},
-          FixedText::of("TANK  {} min", s.gas_min.view()).view(),
+          FixedText::of("{}  {} min", s.gas.view(), s.gas_min.view()).view(),
           s.tank.view(),
           unit.pressure,
           28.0,
           12.0,
           tone_of(s, Alarm::kGas)});
   p.cell({{798.0, top, 80.0, h},
-          s.gas.view(),
+          "pO2 bar",
           s.oxygen.view(),
           "",
           22.0,
           12.0,
           tone_of(s, Alarm::kOxygen)});
-  p.cell({{880.0, top, 76.0, h}, "HDG", s.heading.view(), "", 22.0, 12.0});
+  p.cell({{880.0, top, 76.0, h}, "HDG", s.heading.view(), "\u00b0", 22.0, 12.0});
   if (any_alarm(s)) p.alarm_band({250.0, 0.0, 460.0, 48.0}, s, 17.0);
 }
 

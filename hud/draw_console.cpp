@@ -59,7 +59,7 @@ void draw_diver(Painter& p, const Shown& s) {
           54.0,
           12.0,
           tone_of(s, Alarm::kCeiling)});
-  p.ascent_bar({x + 240.0, 30.0, 34.0, 96.0}, s, 15.0);
+  p.ascent_bar({x + 238.0, 30.0, 38.0, 96.0}, s, 15.0, 11.0);
   draw_limit(p, {x + 6.0, 136.0, 176.0, 80.0}, s, s.in_stops ? 34.0 : 40.0, 12.0);
   p.cell({{x + 186.0, 136.0, 108.0, 80.0}, "TO SURFACE", s.to_surface.view(), "min", 28.0, 12.0});
   p.cell({{x + 6.0, 222.0, 142.0, 62.0}, "TIME", s.dive_time.view(), "", 24.0, 12.0});
@@ -79,7 +79,7 @@ void draw_diver(Painter& p, const Shown& s) {
           19.0,
           12.0});
   p.cell({{x + 136.0, 354.0, 86.0, 54.0},
-          "pO2",
+          "pO2 bar",
           s.oxygen.view(),
           "",
           19.0,
@@ -126,19 +126,18 @@ void draw_streams(Painter& p, const Shown& s) {
     p.text(x + 12.0, y, 11.0, FixedText::of("and {} more", s.more_streams).view(), kLabel);
 }
 
+// ends: texts of the trace's, with their unit.
 void draw_trace(Painter& p, const Box& box, const char* name, std::string_view value,
-                const char* unit, const double (&ends)[2],
+                const char* unit, const FixedText (&ends)[2],
                 const std::array<std::uint8_t, Minute::kSamples>& trace) {
   p.plate(box, 14.0, kPlate);
   title(p, box.x + 14.0, box.y + 24.0, name);
   const double right = box.right() - 14.0;
   const double w = p.text(right, box.y + 34.0, 11.0, unit, kLabel, Align::kRight);
   p.text(right - w - 6.0, box.y + 34.0, 24.0, value, kInk, Align::kRight, Face::kBold);
-  const Box plot{box.x + 44.0, box.y + 46.0, box.w - 58.0, box.h - 76.0};
-  p.text(plot.x - 6.0, plot.y + 11.0, 11.0, FixedText::of("{:.0f}", ends[1]).view(), kLabel,
-         Align::kRight);
-  p.text(plot.x - 6.0, plot.bottom(), 11.0, FixedText::of("{:.0f}", ends[0]).view(), kLabel,
-         Align::kRight);
+  const Box plot{box.x + 82.0, box.y + 46.0, box.w - 96.0, box.h - 76.0};
+  p.text(plot.x - 6.0, plot.y + 11.0, 11.0, ends[1].view(), kLabel, Align::kRight);
+  p.text(plot.x - 6.0, plot.bottom(), 11.0, ends[0].view(), kLabel, Align::kRight);
   p.line(plot.x, plot.bottom(), plot.right(), plot.bottom(), 1.0, kFaint);
   p.line(plot.x, plot.y, plot.right(), plot.y, 1.0, kFaint);
   p.text(plot.x, box.bottom() - 10.0, 11.0, "60 s ago", kLabel);
@@ -235,8 +234,15 @@ void draw_console(Painter& p, const Shown& s) {
   p.compass({502.0, 22.0, 276.0, 46.0}, s, 14.0);
   if (any_alarm(s)) p.alarm_band(kAlarmBand, s, 20.0);
   draw_condition(p, s);
-  draw_trace(p, kHeart, "HEART", s.heart.view(), "beats/min", kHeartTrace_bpm, s.heart_trace);
-  draw_trace(p, kBreath, "BREATH", s.breath.view(), "breaths/min", kLungsTrace_l, s.lungs_trace);
+  const auto rate = [](double bpm) { return FixedText::of("{:.0f}/min", bpm); };
+  const auto volume = [&](double litres) {
+    return FixedText::of("{} {}", litres_text(1e-3 * litres, s.units).view(),
+                         unit_names(s.units).volume);
+  };
+  draw_trace(p, kHeart, "HEART", s.heart.view(), "beats/min",
+             {rate(kHeartTrace_bpm[0]), rate(kHeartTrace_bpm[1])}, s.heart_trace);
+  draw_trace(p, kBreath, "BREATH", s.breath.view(), "breaths/min",
+             {volume(kLungsTrace_l[0]), volume(kLungsTrace_l[1])}, s.lungs_trace);
 }
 
 }  // namespace neritic::hud

@@ -95,7 +95,7 @@ double Painter::text(double x, double y, double size, std::string_view utf8, con
                      Align align, Face face) {
   const double w = width(size, utf8, face);
   const double left = align == Align::kRight ? x - w : align == Align::kCenter ? x - 0.5 * w : x;
-  marks_.push_back({{left, y - size, w, size}, size});
+  marks_.push_back({{left, y - size, w, size}, size, utf8});
   canvas_.text(scale_ * left, scale_ * y, scale_ * size, utf8, color, Align::kLeft, face);
   return w;
 }
@@ -139,20 +139,20 @@ void Painter::level(const Box& box, std::uint8_t step) {
   fill({box.x + 3.0, box.y + 3.0, (box.w - 6.0) * step / kBarSteps, box.h - 6.0}, kLabel);
 }
 
-void Painter::ascent_bar(const Box& box, const Shown& shown, double size) {
-  constexpr double kGap = 3.0;
-  const double below = size + 12.0;
+void Painter::ascent_bar(const Box& box, const Shown& shown, double size, double unit_size) {
+  const double number = box.bottom() - unit_size - 4.0, below = box.bottom() - number + size + 5.0;
+  const double gap_of_steps = std::min(3.0, 0.3 * (box.h - below) / kAscentSteps);
   const Tone tone = tone_of(shown, Alarm::kAscent);
   const bool alarmed = tone.level != AlarmLevel::kOff;
   if (alarmed) plate({box.x - 7.0, box.y - 6.0, box.w + 14.0, box.h + 12.0}, 6.0, plate_of(tone));
   const Color lit = alarmed ? kBlack : kInk;
   const Color dim = alarmed ? Color{0.0f, 0.0f, 0.0f, 0.25f} : kFaint;
-  const double step = (box.h - below + kGap) / kAscentSteps;
+  const double step = (box.h - below + gap_of_steps) / kAscentSteps;
   for (int i = 0; i < kAscentSteps; ++i) {
-    const double y = box.bottom() - below - (i + 1) * step + kGap;
+    const double y = box.bottom() - below - (i + 1) * step + gap_of_steps;
     // Beyond the limits the steps narrow to an arrowhead: a shape, not a colour alone.
     const double narrow = i < shown.fast_steps ? 0.0 : 0.12 * box.w * (i - shown.fast_steps + 1);
-    const Box part{box.x + narrow, y, box.w - 2.0 * narrow, step - kGap};
+    const Box part{box.x + narrow, y, box.w - 2.0 * narrow, step - gap_of_steps};
     if (i < shown.ascent_steps)
       fill(part, i < shown.fast_steps || alarmed ? lit : kCautionColor);
     else
@@ -163,9 +163,12 @@ void Painter::ascent_bar(const Box& box, const Shown& shown, double size) {
   const double w = width(size, shown.ascent.view(), Face::kBold);
   const double arrow = shown.rises == 0 ? 0.0 : 2.0 * mark + gap;
   const double left = box.x + 0.5 * (box.w - w - arrow);
-  text(left + arrow, box.bottom(), size, shown.ascent.view(), lit, Align::kLeft, Face::kBold);
-  if (shown.rises != 0)
-    triangle(left + mark, box.bottom() - 0.5 * size, mark, shown.rises > 0, lit);
+  text(left + arrow, number, size, shown.ascent.view(), lit, Align::kLeft, Face::kBold);
+  if (shown.rises != 0) triangle(left + mark, number - 0.5 * size, mark, shown.rises > 0, lit);
+  const char* const unit = unit_names(shown.units).rate;
+  const double room = box.w + 12.0, wide = width(unit_size, unit, Face::kRegular);
+  text(box.x + 0.5 * box.w, box.bottom(), wide > room ? unit_size * room / wide : unit_size, unit,
+       alarmed ? kBlack : kLabel, Align::kCenter);
 }
 
 void Painter::tissues(const Box& box, const Shown& shown) {

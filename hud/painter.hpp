@@ -32,6 +32,7 @@ struct Tone {
 struct TextMark {
   Box box;            // of its ink, layout units
   double size = 0.0;  // height of capitals, layout units
+  FixedText text;
 };
 
 class Painter {
@@ -67,8 +68,8 @@ class Painter {
   // How full something is, from the left, in kBarSteps; kNoStep: not known.
   void level(const Box& box, std::uint8_t step);
 
-  // The signed rate as begun steps, from the bottom up, with its number below.
-  void ascent_bar(const Box& box, const Shown& shown, double size);
+  // The signed rate as begun steps, from the bottom up, with its number and its unit below.
+  void ascent_bar(const Box& box, const Shown& shown, double size, double unit_size);
   void tissues(const Box& box, const Shown& shown);
   // 90 degrees of the compass around the heading, which stands in the middle.
   void compass(const Box& box, const Shown& shown, double size);

@@ -261,6 +261,51 @@ TEST(HudLayout, WhatStaysTheSameIsNotDrawnAgainAndAllocatesNothing) {
   EXPECT_GT(allocations, 0u);
 }
 
+TEST(HudLayout, NoTextOfTheConsoleTouchesItsPlatesFrame) {
+  constexpr double kLeast_px = 4.0;
+  for (const Units units : {Units::kMetric, Units::kImperial})
+    for (const NamedDive& dive : tested_dives()) {
+      const Hud hud = hud_of(LayoutKind::kConsole, dive.data, 1.0, units);
+      for (const TextMark& mark : hud.marks())
+        for (const Box& plate : console_plates(hud.shown())) {
+          const Box& a = mark.box;
+          if (a.right() < plate.x || a.x > plate.right() || a.bottom() < plate.y ||
+              a.y > plate.bottom())
+            continue;
+          EXPECT_TRUE(a.x >= plate.x + kLeast_px && a.right() <= plate.right() - kLeast_px &&
+                      a.y >= plate.y + kLeast_px && a.bottom() <= plate.bottom() - kLeast_px)
+              << dive.name << ": \"" << mark.text.view() << "\" at " << a.x << ", " << a.y;
+        }
+    }
+}
+
+// The console's graphs have the unit at both ends of their axes, metric and imperial.
+TEST(HudLayout, NoNumberOfAGraphIsWithoutItsUnit) {
+  for (const Units units : {Units::kMetric, Units::kImperial}) {
+    const Hud hud = hud_of(LayoutKind::kConsole, calm_dive(), 1.0, units);
+    std::string all;
+    for (const TextMark& mark : hud.marks()) all += std::string(mark.text.view()) + "\n";
+    const bool metric = units == Units::kMetric;
+    for (const char* text : {"180/min", "40/min", metric ? "7.0 l" : "14.8 pt",
+                             metric ? "0.0 l" : "0.0 pt", "pO2 bar", "beats/min", "breaths/min",
+                             metric ? "m/min" : "ft/min", metric ? "MOD 33 m" : "MOD 110 ft"})
+      EXPECT_NE(all.find(text), std::string::npos) << text << " in\n" << all;
+  }
+}
+
+// Every layout names the unit of its rate, its depths and its oxygen.
+TEST(HudLayout, EachNamesTheUnitOfRateDepthAndOxygen) {
+  for (const Layout& layout : layouts())
+    for (const Units units : {Units::kMetric, Units::kImperial}) {
+      const Hud hud = hud_of(layout.kind, calm_dive(), 1.0, units);
+      std::string all;
+      for (const TextMark& mark : hud.marks()) all += std::string(mark.text.view()) + "\n";
+      for (const std::string& text : {std::string("pO2 bar"), std::string(unit_names(units).rate),
+                                      std::string("DEPTH ") + unit_names(units).depth})
+        EXPECT_NE(all.find(text), std::string::npos) << layout.name << ": " << text;
+    }
+}
+
 // A diver looks for the jacket on each layout: its gas, its lift and each button make another
 // picture; so does the ceiling while stops are owed.
 TEST(HudLayout, EachShowsTheJacketAndTheCeiling) {
