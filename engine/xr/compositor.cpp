@@ -41,7 +41,7 @@ void record_blit(const gpu::Image& from, const gpu::Image& to, VkCommandBuffer c
 
 void record_depth_copy(const gpu::Image& from, const gpu::Image& to, VkCommandBuffer cmd) {
   const gpu::ImageDesc &a = from.desc(), &b = to.desc();
-  NERITIC_CHECK(a.width == b.width && a.height == b.height && a.layers == b.layers,
+  NERITIC_CHECK(a.width <= b.width && a.height <= b.height && a.layers == b.layers,
                 "depth {} of {}x{}x{} to {} of {}x{}x{}", a.name, a.width, a.height, a.layers,
                 b.name, b.width, b.height, b.layers);
   VkImageCopy region{};

@@ -16,7 +16,8 @@ namespace neritic::xr {
 // Adds a pass that copies an image, scaled where the sizes differ, and gives what it wrote.
 graph::ImageHandle copy_image(graph::FrameGraph& graph, const std::string& pass,
                               graph::ImageHandle from, graph::ImageHandle to);
-// The same of depth images, which must be of one size.
+// The same of depth images, which are not scaled: `to` is at least as large, and what it has beyond
+// the right and lower edge of `from` stays undefined.
 graph::ImageHandle copy_depth(graph::FrameGraph& graph, const std::string& pass,
                               graph::ImageHandle from, graph::ImageHandle to);
 

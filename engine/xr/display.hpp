@@ -73,8 +73,8 @@ struct DisplayFrame {
 struct ProjectionLayer {
   std::size_t group = 0;
   graph::ImageHandle color;  // sRGB-encoded RGBA8, an array layer a view; any size: it is scaled
-  // Optional: reversed Z with an infinite far plane, so planar metres = near_m / depth; D32, of the
-  // group's size.
+  // Optional: reversed Z with an infinite far plane, so planar metres = near_m / depth; D32, of any
+  // size up to the group's.
   graph::ImageHandle depth;
   double near_m = 0.0;
 };

@@ -334,8 +334,6 @@ Status DiveView::declare(graph::FrameGraph& graph, const SensorFrame& frame, dou
   pinged_ = !frame.sonars.empty();
   if (!shown()) return {};
   std::vector<xr::Layer> layers;
-  // A display takes depth of its own size only.
-  const bool full_size = view_scale() == 1.0;
   graph::ImageHandle inset;
   for (const SensorFrame::Views& views : frame.views) {
     if (views.index >= frame_.groups.size()) {
@@ -345,7 +343,7 @@ Status DiveView::declare(graph::FrameGraph& graph, const SensorFrame& frame, dou
     if (views.index == 0) NERITIC_TRY_STATUS(picker_.declare(graph, views));
     layers.push_back(xr::ProjectionLayer{.group = views.index,
                                          .color = views.color,
-                                         .depth = full_size ? views.depth : graph::ImageHandle{},
+                                         .depth = views.depth,
                                          .near_m = views.near_m});
   }
   if (hud_) {

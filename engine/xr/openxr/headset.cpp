@@ -89,8 +89,8 @@ class OpenXrHeadset final : public Headset {
   Pose world_from_stage_;
   bool in_frame_ = false;  // between xrBeginFrame and xrEndFrame
   XrTime display_at_ = 0;
-  std::vector<double> near_m_;   // of each group's depth this frame; 0: none
-  std::vector<bool> projected_;  // groups with a picture this frame
+  std::vector<Views::Depth> depths_;  // of each group this frame
+  std::vector<bool> projected_;       // groups with a picture this frame
 };
 
 Status OpenXrHeadset::connect() {
@@ -240,8 +240,8 @@ Status OpenXrHeadset::begin(DisplayFrame& frame) {
   in_frame_ = true;
   not_declared_ = {};
   display_at_ = state.predictedDisplayTime;
-  near_m_.assign(parts_.views->swapchains().size(), 0.0);
-  projected_.assign(near_m_.size(), false);
+  depths_.assign(parts_.views->swapchains().size(), {});
+  projected_.assign(depths_.size(), false);
   frame.display_at_ns = runtime_->to_host(display_at_);
   frame.period_ns = period_of(state);
   if (!state.shouldRender) return {};
@@ -314,14 +314,14 @@ Status OpenXrHeadset::declare_projection(graph::FrameGraph& graph, const Project
   NERITIC_TRY_STATUS(presenter_->declare(graph, color->desc().name, layer.color, *color, true));
   projected_[layer.group] = true;
   if (!layer.depth || !group.depth) return {};
-  // A picture of another size is scaled; its depth is not, and stays here.
+  // A picture of another size is scaled, but means of depths are no depths: a smaller one fills a
+  // corner of the runtime's image, and the layer names that part.
   const graph::ResourceDecl& drawn = graph.declaration().resources[layer.depth.resource];
-  if (drawn.width != group.depth->desc().width || drawn.height != group.depth->desc().height)
-    return {};
+  const VkExtent2D part{drawn.width, drawn.height};
   NERITIC_TRY(const gpu::Image* const depth, group.depth->acquire());
   graph.output(copy_depth(graph, depth->desc().name, layer.depth, graph.import_image(*depth, {})),
                graph::Access::kDepthAttachment);
-  near_m_[layer.group] = layer.near_m;
+  depths_[layer.group] = {layer.near_m, part};
   return {};
 }
 
@@ -342,10 +342,10 @@ Status OpenXrHeadset::end(bool submitted) {
     for (std::size_t i = 0; i < projected_.size(); ++i) {
       Views::Group& group = parts_.views->swapchains()[i];
       if (projected_[i]) NERITIC_TRY_STATUS(group.color->release());
-      if (near_m_[i] > 0.0) NERITIC_TRY_STATUS(group.depth->release());
+      if (depths_[i].near_m > 0.0) NERITIC_TRY_STATUS(group.depth->release());
       whole = whole && projected_[i];
     }
-    if (whole && !projected_.empty()) layers.push_back(parts_.views->layer(near_m_));
+    if (whole && !projected_.empty()) layers.push_back(parts_.views->layer(depths_));
     NERITIC_TRY(const auto panels, parts_.panels->finish(world_from_stage_, layers.size()));
     layers.insert(layers.end(), panels.begin(), panels.end());
   } else {

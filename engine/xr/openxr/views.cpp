@@ -246,7 +246,7 @@ std::vector<ViewGroup> Views::groups() const {
   return out;
 }
 
-const XrCompositionLayerBaseHeader* Views::layer(std::span<const double> near_m) {
+const XrCompositionLayerBaseHeader* Views::layer(std::span<const Depth> depths) {
   layer_views_.assign(views_.size(), {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW});
   layer_depths_.assign(views_.size(), {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR});
   for (std::size_t g = 0; g < groups_.size(); ++g)
@@ -255,14 +255,16 @@ const XrCompositionLayerBaseHeader* Views::layer(std::span<const double> near_m)
       view.pose = views_[groups_[g].first + i].pose;
       view.fov = views_[groups_[g].first + i].fov;
       view.subImage = groups_[g].color->sub_image(static_cast<std::uint32_t>(i));
-      if (!(near_m[g] > 0.0) || !groups_[g].depth) continue;
+      if (!(depths[g].near_m > 0.0) || !groups_[g].depth) continue;
       // Reversed: 0 is at infinity, 1 at near_m.
       XrCompositionLayerDepthInfoKHR& depth = layer_depths_[groups_[g].first + i];
       depth.subImage = groups_[g].depth->sub_image(static_cast<std::uint32_t>(i));
+      depth.subImage.imageRect.extent = {static_cast<std::int32_t>(depths[g].part.width),
+                                         static_cast<std::int32_t>(depths[g].part.height)};
       depth.minDepth = 0.0f;
       depth.maxDepth = 1.0f;
       depth.nearZ = std::numeric_limits<float>::infinity();
-      depth.farZ = static_cast<float>(near_m[g]);
+      depth.farZ = static_cast<float>(depths[g].near_m);
       view.next = &depth;
     }
   layer_.space = session_.stage();

@@ -34,9 +34,14 @@ class Views {
   };
   std::vector<Group>& swapchains() { return groups_; }
 
-  // The composition layer of what the newest locate found; valid until the next call. near_m: of
-  // each group's depth, 0: without.
-  const XrCompositionLayerBaseHeader* layer(std::span<const double> near_m);
+  // The depth of a group's views, in the left upper part of the runtime's images.
+  struct Depth {
+    double near_m = 0.0;  // 0: without
+    VkExtent2D part{};
+  };
+  // The composition layer of what the newest locate found; valid until the next call. One depth a
+  // group.
+  const XrCompositionLayerBaseHeader* layer(std::span<const Depth> depths);
 
  private:
   Views(Runtime& runtime, const Session& session) : runtime_(runtime), session_(session) {}

@@ -13,6 +13,7 @@ const Vec3 kLab_m{30.0, -5.6, 10.0};
 
 struct Place {
   double x_px = 0.0, y_px = 0.0, nearest_m = 0.0;
+  double width_px = 0.0, height_px = 0.0;  // of the picture
 };
 
 class HeadsetPicture : public HeadsetRun {
@@ -48,7 +49,34 @@ class HeadsetPicture : public HeadsetRun {
       sum.nearest_m = std::min(sum.nearest_m, metres[i]);
       count += 1.0;
     }
-    return {sum.x_px / count, sum.y_px / count, sum.nearest_m};
+    return {sum.x_px / count, sum.y_px / count, sum.nearest_m, static_cast<double>(depth.shape[1]),
+            static_cast<double>(depth.shape[0])};
+  }
+  // The middle of the brightest pixels of the middle half, which the lenses show whole: of the lit
+  // part of the ball.
+  Place brightest(int frame, int view) const {
+    const ImageU8 seen = picture(frame, view);
+    const auto light = [&](std::uint32_t x, std::uint32_t y) {
+      return seen.at(x, y, 0) + seen.at(x, y, 1) + seen.at(x, y, 2);
+    };
+    int least = 765, most = 0;
+    const auto of_middle = [&](const auto& visit) {
+      for (std::uint32_t y = seen.height / 4; y < seen.height * 3 / 4; ++y)
+        for (std::uint32_t x = seen.width / 4; x < seen.width * 3 / 4; ++x) visit(x, y);
+    };
+    of_middle([&](std::uint32_t x, std::uint32_t y) {
+      least = std::min(least, light(x, y));
+      most = std::max(most, light(x, y));
+    });
+    Place sum;
+    double count = 0.0;
+    of_middle([&](std::uint32_t x, std::uint32_t y) {
+      if (light(x, y) < (least + most) / 2) return;
+      sum.x_px += x + 0.5;
+      sum.y_px += y + 0.5;
+      count += 1.0;
+    });
+    return {sum.x_px / count, sum.y_px / count};
   }
   // The middle of a sphere's outline, which is an ellipse: perspective moves it outwards.
   static Place expected(const Vec3& view_from_ball, double left_deg, double right_deg,
@@ -81,6 +109,33 @@ TEST_F(HeadsetPicture, EachEyeSeesABallWhereItIsWhenThePictureIsShown) {
   EXPECT_NEAR(b.y_px, in_right.y_px, 0.1);
   EXPECT_NEAR(a.x_px - b.x_px, in_left.x_px - in_right.x_px, 0.1);
   EXPECT_NEAR(a.nearest_m, 3.0 - kRadius_m, 0.01);
+}
+
+// No machine draws a frame in a millisecond, so that the governor draws coarser views. Their depth
+// goes to the runtime all the same: late frames need it most. It fits the picture, which is scaled
+// to the runtime's size.
+TEST_F(HeadsetPicture, ACoarserPictureHasItsDepthToo) {
+  fakes::FakeHeadset fake(
+      fmt::format("size 240 220\nfov -52 42 45 -49\neye_distance 0.064\nperiod 0.001\n"
+                  "head 0 0 1.6 0\nout {}\nout_frames 14\n",
+                  folder()));
+  govern();
+  const Vec3 ball{0.4, 1.5, -3.0};
+  NERITIC_ASSERT_STATUS(dive(scene(ball), 16));
+  for (int view = 0; view < 2; ++view) {
+    const Vec3 place = ball - Vec3(view == 0 ? -0.032 : 0.032, 1.6, 0.0);
+    const double left = view == 0 ? -52 : -42, right = view == 0 ? 42 : 52;
+    const Place depth = seen(14, view);
+    ASSERT_LT(depth.width_px, 240.0 * 0.9);
+    ASSERT_LT(depth.height_px, 220.0 * 0.9);
+    const Place want = expected(place, left, right, 45, -49, depth.width_px, depth.height_px);
+    EXPECT_NEAR(depth.x_px, want.x_px, 0.25);
+    EXPECT_NEAR(depth.y_px, want.y_px, 0.25);
+    EXPECT_NEAR(depth.nearest_m, 3.0 - kRadius_m, 0.05);
+    const Place lit = brightest(14, view);
+    EXPECT_NEAR(lit.x_px, depth.x_px / depth.width_px * 240.0, 3.0);
+    EXPECT_NEAR(lit.y_px, depth.y_px / depth.height_px * 220.0, 10.0);
+  }
 }
 
 TEST_F(HeadsetPicture, FourViewsAreTwoWideOnesAndTwoSharpOnes) {
