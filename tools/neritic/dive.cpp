@@ -100,52 +100,73 @@ struct Screen {
   xr::Display& shown_on() const { return headset ? *headset : *display; }
 };
 
-// The headset where one is asked for, or is there.
-Status connect_headset(const DiveFlags& flags, const scene::Scene& scene, Screen& screen) {
+gpu::DeviceOptions device_options(const DiveFlags& flags) {
+  gpu::DeviceOptions options;
+  options.device = flags.device;
+  options.validation = flags.validation;
+  options.cache_folder = gpu::default_cache_folder();
+  return options;
+}
+
+// The device that a headset's runtime makes, and its session.
+Status start_headset(const DiveFlags& flags, const scene::Scene& scene, Screen& screen) {
+  NERITIC_TRY(screen.headset, xr::Headset::connect({.room = scene.world_from_lab.has_value(),
+                                                    .refresh_hz = flags.refresh_hz,
+                                                    .actions = screen.actions,
+                                                    .validation = flags.validation}));
+  gpu::DeviceOptions options = device_options(flags);
+  screen.headset->require(options);
+  NERITIC_TRY(screen.device, gpu::Device::create(options));
+  return screen.headset->attach(*screen.device);
+}
+
+// The headset where one is asked for, or is there. Without --display openxr one that shows nothing
+// (no runtime, or none of its formats can be drawn) leaves the dive to a window.
+Status find_headset(const DiveFlags& flags, const scene::Scene& scene, Screen& screen) {
   screen.actions = dive_actions();
   if (!flags.bindings.empty()) {
     NERITIC_TRY(screen.actions, bound_actions(screen.actions, flags.bindings));
   }
   if (flags.headless || flags.display == "window") return {};
-  auto headset = xr::Headset::connect({.room = scene.world_from_lab.has_value(),
-                                       .refresh_hz = flags.refresh_hz,
-                                       .actions = screen.actions,
-                                       .validation = flags.validation});
-  if (headset.ok()) {
-    screen.headset = std::move(headset.value());
-    return {};
-  }
-  if (flags.display == "openxr" || headset.error().code == ErrorCode::kBadInput)
-    return headset.error();
-  screen.no_headset = headset.error().message;
+  const Status started = start_headset(flags, scene, screen);
+  if (started.ok()) return {};
+  if (flags.display == "openxr" || started.error().code == ErrorCode::kBadInput) return started;
+  screen.headset.reset();
+  screen.device.reset();
+  screen.no_headset = started.error().message;
   return {};
 }
 
-Status make_device(const DiveFlags& flags, const scene::Scene& scene, Screen& screen) {
-  gpu::DeviceOptions options;
-  options.device = flags.device;
-  options.validation = flags.validation;
-  options.cache_folder = gpu::default_cache_folder();
-  if (screen.headset) {
-    screen.headset->require(options);
-  } else if (!flags.headless) {
-    const Result<ViewMemory> memory = read_view_memory(view_memory_file());
-    if (memory.ok())
-      screen.memory = *memory;
-    else
-      log_warn("{}", memory.error().message);
-    std::pair<std::uint32_t, std::uint32_t> size{screen.memory.width, screen.memory.height};
-    if (!flags.size.empty()) {
-      NERITIC_TRY(size, parse_size("--size", flags.size));
-    }
-    NERITIC_TRY(screen.window,
-                xr::Window::create({.title = "Neritic: " + scene.title,
+Status make_window(const DiveFlags& flags, const scene::Scene& scene, Screen& screen) {
+  const Result<ViewMemory> memory = read_view_memory(view_memory_file());
+  if (memory.ok())
+    screen.memory = *memory;
+  else
+    log_warn("{}", memory.error().message);
+  std::pair<std::uint32_t, std::uint32_t> size{screen.memory.width, screen.memory.height};
+  if (!flags.size.empty()) {
+    NERITIC_TRY(size, parse_size("--size", flags.size));
+  }
+  auto window = xr::Window::create({.title = "Neritic: " + scene.title,
                                     .width = size.first,
                                     .height = size.second,
                                     .actions = screen.actions,
-                                    .hint = "use --headless, or neritic render for pictures"}));
+                                    .hint = "use --headless, or neritic render for pictures"});
+  if (!window.ok() && !screen.no_headset.empty())
+    return failure(window.error().code, "no headset: {}; no window: {}", screen.no_headset,
+                   window.error().message);
+  NERITIC_TRY(screen.window, std::move(window));
+  if (!screen.no_headset.empty()) log_warn("{}: the dive is in a window", screen.no_headset);
+  return {};
+}
+
+// A headset brings its own.
+Status make_device(const DiveFlags& flags, const scene::Scene& scene, Screen& screen) {
+  if (screen.headset) return {};
+  gpu::DeviceOptions options = device_options(flags);
+  if (!flags.headless) {
+    NERITIC_TRY_STATUS(make_window(flags, scene, screen));
     screen.window->require(options);
-    if (!screen.no_headset.empty()) log_warn("{}: the dive is in a window", screen.no_headset);
   }
   NERITIC_TRY(screen.device, gpu::Device::create(options));
   return {};
@@ -153,7 +174,7 @@ Status make_device(const DiveFlags& flags, const scene::Scene& scene, Screen& sc
 
 Status make_display(const DiveFlags& flags, const scene::Camera& camera, Screen& screen) {
   gpu::Device& device = *screen.device;
-  if (screen.headset) return screen.headset->attach(device);
+  if (screen.headset) return {};
   if (screen.window) {
     xr::Window& window = *screen.window;
     NERITIC_TRY(screen.display,
@@ -422,7 +443,7 @@ Status run_whole_dive(const DiveFlags& asked) {
                        : load_scene_or_model(flags.scene, flags.size));
   if (flags.scene.empty()) flags.scene = scene.path;
   Screen screen;
-  NERITIC_TRY_STATUS(connect_headset(flags, scene, screen));
+  NERITIC_TRY_STATUS(find_headset(flags, scene, screen));
   // A person in the sea is a diver, also where the scene has none.
   const bool worn_headset = screen.headset && !is_model(scene);
   std::string worn;

@@ -7,19 +7,80 @@ namespace {
 
 constexpr int kWaits = 1000;
 
-struct Format {
+// 8 bits of linear light show bands in dark water, so that they come last.
+constexpr VkFormat kColors[] = {
+    VK_FORMAT_R8G8B8A8_SRGB,       VK_FORMAT_B8G8R8A8_SRGB,
+    VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+    VK_FORMAT_R8G8B8A8_UNORM,      VK_FORMAT_B8G8R8A8_UNORM,
+};
+
+struct FormatName {
   VkFormat format;
   const char* name;
 };
-// 8 bits of linear light show bands in dark water, so that they come last.
-constexpr Format kColors[] = {
-    {VK_FORMAT_R8G8B8A8_SRGB, "R8G8B8A8_SRGB"},
-    {VK_FORMAT_B8G8R8A8_SRGB, "B8G8R8A8_SRGB"},
-    {VK_FORMAT_R16G16B16A16_SFLOAT, "R16G16B16A16_SFLOAT"},
-    {VK_FORMAT_A2B10G10R10_UNORM_PACK32, "A2B10G10R10_UNORM"},
-    {VK_FORMAT_R8G8B8A8_UNORM, "R8G8B8A8_UNORM"},
-    {VK_FORMAT_B8G8R8A8_UNORM, "B8G8R8A8_UNORM"},
+// What a runtime may show or take as depth, without the prefix.
+#define NERITIC_FORMAT(name) \
+  { VK_FORMAT_##name, #name }
+constexpr FormatName kNames[] = {
+    NERITIC_FORMAT(R4G4B4A4_UNORM_PACK16),
+    NERITIC_FORMAT(B4G4R4A4_UNORM_PACK16),
+    NERITIC_FORMAT(R5G6B5_UNORM_PACK16),
+    NERITIC_FORMAT(B5G6R5_UNORM_PACK16),
+    NERITIC_FORMAT(R5G5B5A1_UNORM_PACK16),
+    NERITIC_FORMAT(B5G5R5A1_UNORM_PACK16),
+    NERITIC_FORMAT(A1R5G5B5_UNORM_PACK16),
+    NERITIC_FORMAT(R8_UNORM),
+    NERITIC_FORMAT(R8G8_UNORM),
+    NERITIC_FORMAT(R8G8B8_UNORM),
+    NERITIC_FORMAT(R8G8B8_SRGB),
+    NERITIC_FORMAT(B8G8R8_UNORM),
+    NERITIC_FORMAT(B8G8R8_SRGB),
+    NERITIC_FORMAT(R8G8B8A8_UNORM),
+    NERITIC_FORMAT(R8G8B8A8_SNORM),
+    NERITIC_FORMAT(R8G8B8A8_UINT),
+    NERITIC_FORMAT(R8G8B8A8_SRGB),
+    NERITIC_FORMAT(B8G8R8A8_UNORM),
+    NERITIC_FORMAT(B8G8R8A8_SRGB),
+    NERITIC_FORMAT(A8B8G8R8_UNORM_PACK32),
+    NERITIC_FORMAT(A8B8G8R8_SRGB_PACK32),
+    NERITIC_FORMAT(A2R10G10B10_UNORM_PACK32),
+    NERITIC_FORMAT(A2B10G10R10_UNORM_PACK32),
+    NERITIC_FORMAT(R16_SFLOAT),
+    NERITIC_FORMAT(R16G16_SFLOAT),
+    NERITIC_FORMAT(R16G16B16_UNORM),
+    NERITIC_FORMAT(R16G16B16_SFLOAT),
+    NERITIC_FORMAT(R16G16B16A16_UNORM),
+    NERITIC_FORMAT(R16G16B16A16_SNORM),
+    NERITIC_FORMAT(R16G16B16A16_SFLOAT),
+    NERITIC_FORMAT(R32_SFLOAT),
+    NERITIC_FORMAT(R32G32_SFLOAT),
+    NERITIC_FORMAT(R32G32B32_SFLOAT),
+    NERITIC_FORMAT(R32G32B32A32_SFLOAT),
+    NERITIC_FORMAT(B10G11R11_UFLOAT_PACK32),
+    NERITIC_FORMAT(E5B9G9R9_UFLOAT_PACK32),
+    NERITIC_FORMAT(D16_UNORM),
+    NERITIC_FORMAT(X8_D24_UNORM_PACK32),
+    NERITIC_FORMAT(D32_SFLOAT),
+    NERITIC_FORMAT(S8_UINT),
+    NERITIC_FORMAT(D16_UNORM_S8_UINT),
+    NERITIC_FORMAT(D24_UNORM_S8_UINT),
+    NERITIC_FORMAT(D32_SFLOAT_S8_UINT),
 };
+#undef NERITIC_FORMAT
+
+// By its number where it is none of those.
+std::string name_of_format(VkFormat format) {
+  const auto found = std::ranges::find(kNames, format, &FormatName::format);
+  return found != std::end(kNames) ? std::string(found->name)
+                                   : fmt::format("VkFormat {}", static_cast<int>(format));
+}
+
+std::string names_of_formats(std::span<const VkFormat> formats) {
+  std::string names;
+  for (const VkFormat format : formats)
+    names += (names.empty() ? "" : ", ") + name_of_format(format);
+  return names.empty() ? "(none)" : names;
+}
 
 VkImageUsageFlags vulkan_usage(XrSwapchainUsageFlags usage) {
   VkImageUsageFlags out = 0;
@@ -127,17 +188,11 @@ Result<std::vector<VkFormat>> swapchain_formats(Runtime& runtime, XrSession sess
 }
 
 Result<VkFormat> choose_color(std::span<const VkFormat> offered) {
-  std::string accepted, found;
-  for (const Format& format : kColors) {
-    if (std::find(offered.begin(), offered.end(), format.format) != offered.end())
-      return format.format;
-    accepted += (accepted.empty() ? "" : ", ") + std::string(format.name);
-  }
-  for (const VkFormat format : offered)
-    found += fmt::format("{}{}", found.empty() ? "" : ", ", static_cast<int>(format));
+  for (const VkFormat format : kColors)
+    if (std::find(offered.begin(), offered.end(), format) != offered.end()) return format;
   return failure(ErrorCode::kUnsupported,
                  "the OpenXR runtime takes pictures of the Vulkan formats {} only; accepted: {}",
-                 found.empty() ? "(none)" : found, accepted);
+                 names_of_formats(offered), names_of_formats(kColors));
 }
 
 VkFormat choose_depth(std::span<const VkFormat> offered) {
