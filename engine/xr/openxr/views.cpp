@@ -104,6 +104,28 @@ Result<std::vector<XrViewConfigurationView>> Views::sizes() {
   return sizes;
 }
 
+// The larger of what the runtime recommends for the views, but no more than each view, and its
+// images, may have: a setting of supersampling may ask for more than either.
+VkExtent2D Views::size_of_pair(std::span<const XrViewConfigurationView> sizes) const {
+  VkExtent2D wanted{1, 1};
+  // A runtime that names no limit has none.
+  constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  const auto limit = [](std::uint32_t told) { return told > 0 ? told : kNone; };
+  const XrSystemGraphicsProperties& images = runtime_.properties().graphicsProperties;
+  VkExtent2D most{limit(images.maxSwapchainImageWidth), limit(images.maxSwapchainImageHeight)};
+  for (const XrViewConfigurationView& view : sizes) {
+    wanted.width = std::max(wanted.width, view.recommendedImageRectWidth);
+    wanted.height = std::max(wanted.height, view.recommendedImageRectHeight);
+    most.width = std::min(most.width, limit(view.maxImageRectWidth));
+    most.height = std::min(most.height, limit(view.maxImageRectHeight));
+  }
+  const VkExtent2D size{std::min(wanted.width, most.width), std::min(wanted.height, most.height)};
+  if (size.width < wanted.width || size.height < wanted.height)
+    log_warn("{} recommends views of {} x {} pixels, but takes {} x {} at most: they are drawn so",
+             runtime_.info().runtime, wanted.width, wanted.height, most.width, most.height);
+  return size;
+}
+
 Status Views::make_swapchains(gpu::Device& device, std::span<const XrViewConfigurationView> sizes) {
   NERITIC_TRY(const auto formats, swapchain_formats(runtime_, session_.handle()));
   NERITIC_TRY(const VkFormat color, choose_color(formats));
@@ -111,18 +133,14 @@ Status Views::make_swapchains(gpu::Device& device, std::span<const XrViewConfigu
   // The views of a pair share one image: its size is the larger of the two.
   for (std::size_t first = 0; first < sizes.size(); first += 2) {
     Group group{.first = first, .count = std::min<std::size_t>(2, sizes.size() - first)};
-    std::uint32_t width = 1, height = 1;
-    for (std::size_t i = first; i < first + group.count; ++i) {
-      width = std::max(width, sizes[i].recommendedImageRectWidth);
-      height = std::max(height, sizes[i].recommendedImageRectHeight);
-    }
+    const VkExtent2D size = size_of_pair(sizes.subspan(first, group.count));
     const auto number = groups_.size();
     SwapchainDesc desc{
         .name = fmt::format("headset color {}", number),
         .format = color,
         .usage = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT,
-        .width = width,
-        .height = height,
+        .width = size.width,
+        .height = size.height,
         .layers = static_cast<std::uint32_t>(group.count)};
     NERITIC_TRY(group.color, Swapchain::create(runtime_, session_.handle(), device, desc));
     if (depth != VK_FORMAT_UNDEFINED) {

@@ -48,6 +48,7 @@ class Views {
   Status choose_configuration();
   Status choose_blend_mode();
   Result<std::vector<XrViewConfigurationView>> sizes();
+  VkExtent2D size_of_pair(std::span<const XrViewConfigurationView> sizes) const;
   Status make_swapchains(gpu::Device& device, std::span<const XrViewConfigurationView> sizes);
   Status make_eyes();
   Vec3 standing_eyes_m() const;

@@ -204,7 +204,18 @@ TEST_F(HeadsetLife, AFormatThatNobodyCanDrawIsNamed) {
   fakes::FakeHeadset fake(kSmall + "formats D16_UNORM\n");
   const Status status = dive(scene(), 2);
   ASSERT_FALSE(status.ok());
+  EXPECT_THAT(status.error().message, HasSubstr("the Vulkan formats D16_UNORM only"));
   EXPECT_THAT(status.error().message, HasSubstr("accepted: R8G8B8A8_SRGB"));
+}
+
+// A runtime's setting of supersampling may recommend more than its images may have.
+TEST_F(HeadsetLife, ViewsAreNoLargerThanTheRuntimesImages) {
+  fakes::FakeHeadset fake("size 64 60\nmax_size 48\n");
+  ::testing::internal::CaptureStderr();
+  NERITIC_ASSERT_STATUS(dive(scene(), 2));
+  EXPECT_EQ(shown(), 2u);
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
+              HasSubstr("recommends views of 64 x 60 pixels, but takes 48 x 48 at most"));
 }
 
 TEST_F(HeadsetLife, FourViewsAndARuntimeWithoutExtrasAreShownToo) {
