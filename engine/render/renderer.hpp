@@ -204,6 +204,11 @@ class Renderer {
                                              std::uint32_t inscatter_samples = 4);
   // The passes of the scene's water, between forward and the display picture.
   WaterPasses& water() { return water_; }
+  // An HDR picture of fewer pixels: each is the mean of a square of `side` by `side` (2 to 4).
+  Result<graph::ImageHandle> declare_average(graph::FrameGraph& graph, const std::string& prefix,
+                                             graph::ImageHandle hdr, std::uint32_t side,
+                                             std::uint32_t width, std::uint32_t height,
+                                             std::uint32_t layers);
   // A display picture of another size: between its four nearest pixels.
   Result<graph::ImageHandle> declare_resize(graph::FrameGraph& graph, const std::string& prefix,
                                             graph::ImageHandle color, std::uint32_t width,
@@ -242,13 +247,14 @@ class Renderer {
                                             const ViewSet& views);
 
  private:
-  // A pass that turns one picture into another of the same size, pixel by pixel.
+  // A pass that turns one picture into another.
   struct PictureFilter {
     const char* name;    // of the pass
     const char* result;  // of the image
     std::span<const std::uint32_t> code;
     std::vector<gpu::SpecConstant> constants;
-    std::uint32_t block = 1;  // pixels of the result a side to an invocation
+    std::uint32_t block = 1;         // pixels of the result a side to an invocation
+    VkFormat format = kColorFormat;  // of the result
   };
   Result<graph::ImageHandle> declare_filter(graph::FrameGraph& graph, const std::string& prefix,
                                             const PictureFilter& filter, gpu::Pipeline& pipeline,
@@ -337,6 +343,7 @@ class Renderer {
   gpu::Pipeline shafts_blur_, focus_, shutter_, shutter_tiles_, shutter_reach_;
   gpu::Pipeline band_albedo_;
   std::map<std::uint32_t, gpu::Pipeline> merge_;             // by pictures
+  std::map<std::uint32_t, gpu::Pipeline> average_;           // by pixels a side
   std::map<std::uint32_t, gpu::Pipeline> camera_;            // by terms
   gpu::Sampler tile_sampler_;                                // linear, repeating
   std::map<std::uint32_t, gpu::Pipeline> hidden_pipelines_;  // by view mask

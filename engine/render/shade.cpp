@@ -272,7 +272,7 @@ Result<graph::BufferHandle> Renderer::declare_shade_tiles(graph::FrameGraph& gra
 
 // Both filters bind their source at 0 and their result at 1.
 static_assert(shared::kTonemapHdr == 0 && shared::kTonemapOut == 1 && shared::kAntialiasIn == 0 &&
-              shared::kAntialiasOut == 1);
+              shared::kAntialiasOut == 1 && shared::kAverageIn == 0 && shared::kAverageOut == 1);
 
 Result<graph::ImageHandle> Renderer::declare_filter(graph::FrameGraph& graph,
                                                     const std::string& prefix,
@@ -297,7 +297,7 @@ Result<graph::ImageHandle> Renderer::declare_filter(graph::FrameGraph& graph,
       [&](graph::PassBuilder& builder, Data& data) {
         builder.read(in, graph::Access::kSampledCompute);
         data.out = builder.write(
-            builder.create_image(prefix + filter.result, {kColorFormat, width, height, layers}),
+            builder.create_image(prefix + filter.result, {filter.format, width, height, layers}),
             graph::Access::kStorageWriteCompute);
       },
       [&pipeline, in, width, height, layers, block = filter.block](const Data& data,
@@ -310,6 +310,21 @@ Result<graph::ImageHandle> Renderer::declare_filter(graph::FrameGraph& graph,
                           layers);
       });
   return pass.out;
+}
+
+Result<graph::ImageHandle> Renderer::declare_average(graph::FrameGraph& graph,
+                                                     const std::string& prefix,
+                                                     graph::ImageHandle hdr, std::uint32_t side,
+                                                     std::uint32_t width, std::uint32_t height,
+                                                     std::uint32_t layers) {
+  return declare_filter(graph, prefix,
+                        {"average",
+                         "mean hdr",
+                         shaders::kAverageComp,
+                         {{shared::kSpecAverageSide, side}},
+                         1,
+                         kHdrFormat},
+                        average_[side], hdr, width, height, layers);
 }
 
 Result<graph::ImageHandle> Renderer::declare_resize(graph::FrameGraph& graph,

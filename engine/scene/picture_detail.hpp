@@ -9,7 +9,9 @@
 namespace neritic::scene {
 
 struct PictureDetail {
-  double resolution = 1.0;   // share of the picture's sides that is shaded; a camera's own terms: 1
+  // Share of the picture's sides that is shaded; a camera's own terms: 1. Above 1 a whole number: a
+  // pixel is the mean of so many a side, whatever the camera's terms.
+  double resolution = 1.0;
   double shadow_size = 1.0;  // texels a side of the sun's maps, times those named
   std::uint32_t cascades = 4;           // of those named, at most: the widest are kept
   std::uint32_t shadow_samples = 9;     // rings of taps round a shadow's middle
@@ -32,6 +34,7 @@ struct PictureLevel {
   double error;
 };
 // From the cheapest to the best.
+inline constexpr double kMostResolution = 4.0;
 const PictureLevel& picture_level(std::string_view name);
 // The cheapest whose error is at most that; absent where none is.
 const PictureLevel* picture_level_within(double error);

@@ -42,7 +42,9 @@ PictureDetail read_detail(TableReader& reader) {
   const auto whole = [&](Key key, std::uint32_t& value, std::int64_t low, std::int64_t high) {
     value = static_cast<std::uint32_t>(knobs.whole(key, value, low, high));
   };
-  detail.resolution = knobs.number("resolution", detail.resolution, {0.1, 1});
+  detail.resolution = knobs.number("resolution", detail.resolution, {0.1, kMostResolution});
+  if (detail.resolution > 1.0 && detail.resolution != std::floor(detail.resolution))
+    knobs.refuse("resolution", "[0.1, 1], 2, 3 or 4");
   detail.shadow_size = knobs.number("shadow_size", detail.shadow_size, {0.0625, 4});
   whole("cascades", detail.cascades, 1, 4);
   whole("shadow_samples", detail.shadow_samples, 1, 64);

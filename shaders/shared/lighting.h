@@ -142,6 +142,11 @@ NERITIC_CONST uint kAntialiasIn = 0;
 NERITIC_CONST uint kAntialiasOut = 1;
 NERITIC_CONST int kAntialiasBlock = 2;  // pixels a side to an invocation
 
+// Bindings of the average pass, and its specialisation constant: pixels a side that make one.
+NERITIC_CONST uint kAverageIn = 0;
+NERITIC_CONST uint kAverageOut = 1;
+NERITIC_CONST uint kSpecAverageSide = 0;
+
 // Bindings of the resize pass.
 NERITIC_CONST uint kResizeIn = 0;
 NERITIC_CONST uint kResizeOut = 1;

@@ -86,9 +86,13 @@ std::uint64_t host_bytes(const gpu::Device& device, const scene::Scene& scene,
     const Capture& capture = picture.capture;
     const std::uint64_t at_host = capture.color * 16 + capture.depth * 8 + capture.normals * 24 +
                                   capture.labels * 4 + capture.instances * 4 + capture.motion * 16;
+    // A picture of averaged pixels is shaded in more of them.
+    const double fine = capture.color ? std::max(picture.detail.resolution, 1.0) : 1.0;
+    const double on_device =
+        on_cpu ? fine * fine * double(kDevice_bytes + (capture.color ? term_bytes(scene) : 0))
+               : 0.0;
     bytes += picture.pixels() * picture.views *
-             ((on_cpu ? kDevice_bytes + (capture.color ? term_bytes(scene) : 0) : 0) +
-              (capture.to_host ? at_host : 0));
+             (static_cast<std::uint64_t>(on_device) + (capture.to_host ? at_host : 0));
   }
   return bytes;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "engine/core/check.hpp"
@@ -22,6 +23,11 @@ Status check_size(const gpu::Device& device, const std::string& what,
     return refusal(what, fmt::format("size {}x{}", views.width, views.height),
                    fmt::format("1 to {} pixels a side", limit));
   return {};
+}
+
+// Pixels a side whose mean is one of the picture.
+std::uint32_t averaged(const scene::PictureDetail& detail) {
+  return detail.resolution > 1.0 ? static_cast<std::uint32_t>(std::lround(detail.resolution)) : 1u;
 }
 
 // Pixels by which coarser meshes may differ (scene::MeshLevel); of the sun's maps texels. None
@@ -190,6 +196,7 @@ Result<graph::ImageHandle> declare_lit(const FrameParts& frame, const std::strin
   if (scattered) {
     scene::ForwardScatter scatter = *frame.scene.water->forward_scatter;
     scatter.levels = std::min(scatter.levels, detail.scatter_levels);
+    scatter.levels += static_cast<std::uint32_t>(std::bit_width(averaged(detail) - 1u));
     NERITIC_TRY(hdr, frame.renderer.water().declare_forward_scatter(
                          frame.graph, prefix, hdr, scattered, g, views, lighting, scatter));
   }
@@ -231,9 +238,11 @@ Result<graph::ImageHandle> declare_spectrum(const FrameParts& frame, const std::
   return frame.renderer.declare_merge(frame.graph, prefix, pictures, bands.rgb_from_bands, g);
 }
 
-// The tonemapped picture of a surface G-buffer.
+// The tonemapped picture of a surface G-buffer. own: the G-buffer of the picture's pixels, for the
+// camera's focus and shutter; g itself where each is shaded once.
 Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::string& prefix,
-                                         const render::GBuffer& g, const render::ViewSet& views,
+                                         const render::GBuffer& g, const render::GBuffer& own,
+                                         const render::ViewSet& views,
                                          const render::DrawList& draws, const ViewsRequest& request,
                                          ViewsWork& work) {
   const scene::PictureDetail& detail = request.detail;
@@ -260,9 +269,15 @@ Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::str
               request.camera && request.camera->terms.spectrum
                   ? declare_spectrum(frame, prefix, g, views, draws, request, work, lighting, light)
                   : declare_lit(frame, prefix, g, views, draws, request, work, lighting, light));
+  const render::ViewSet& asked = work.views;
   std::uint32_t width = g.width, height = g.height;
+  if (const std::uint32_t side = averaged(detail); side > 1) {
+    width = asked.width, height = asked.height;
+    NERITIC_TRY(hdr, frame.renderer.declare_average(frame.graph, prefix, hdr, side, width, height,
+                                                    g.layers));
+  }
   if (request.camera) {
-    NERITIC_TRY(hdr, declare_focus_and_shutter(frame, prefix, hdr, g, views.views.front().near_m,
+    NERITIC_TRY(hdr, declare_focus_and_shutter(frame, prefix, hdr, own, views.views.front().near_m,
                                                *request.camera));
     NERITIC_TRY(const CameraHdr made,
                 declare_camera(frame, prefix, hdr, g.layers, *request.camera, lighting));
@@ -281,8 +296,7 @@ Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::str
   NERITIC_TRY(const graph::ImageHandle color,
               frame.renderer.declare_picture(frame.graph, prefix, hdr, width, height, g.layers,
                                              request.antialias));
-  const render::ViewSet& asked = work.views;
-  if (request.camera || (g.width == asked.width && g.height == asked.height)) return color;
+  if (request.camera || (width == asked.width && height == asked.height)) return color;
   return frame.renderer.declare_resize(frame.graph, prefix, color, asked.width, asked.height,
                                        g.layers);
 }
@@ -337,15 +351,18 @@ Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::str
   };
   // Lens and image sensor work on the whole picture.
   const bool coarse = capture.color && request.detail.resolution < 1.0 && !request.camera;
-  work.mesh_error_px = arrays && !coarse ? 0.0 : mesh_error_px(request.detail);
+  const bool apart = coarse || (capture.color && averaged(request.detail) > 1);
+  const bool follows = capture.color && request.camera &&
+                       (request.camera->terms.focus || request.camera->terms.shutter);
+  work.mesh_error_px = arrays && !apart ? 0.0 : mesh_error_px(request.detail);
   SensorFrame::Views out{.near_m = work.views.views.front().near_m,
                          .width = work.views.width,
                          .height = work.views.height,
                          .layers = work.views.layers()};
   // With or without colour the same geometry: single-sided materials, no blended ones in the depth.
   render::GBuffer g;
-  if (!coarse || capture.geometry() || capture.motion) {
-    const bool surface = capture.color && !coarse;
+  if (!apart || capture.geometry() || capture.motion || follows) {
+    const bool surface = capture.color && !apart;
     NERITIC_TRY(
         g, declare(prefix, surface ? render::GBufferKind::kSurface : render::GBufferKind::kShape,
                    work.views, work.draws, surface ? render::GBufferParts{} : parts_of(capture),
@@ -355,17 +372,19 @@ Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::str
     out.normal = g.normal;
     out.label = g.label;
   }
-  if (coarse) {
+  if (apart) {
     work.shaded_views = work.views;
     work.shaded_views.width = shaded(work.views.width, request.detail.resolution);
     work.shaded_views.height = shaded(work.views.height, request.detail.resolution);
+    NERITIC_TRY_STATUS(check_size(frame.device, label + ", finely shaded,", work.shaded_views));
     NERITIC_TRY(const render::GBuffer shading,
                 declare(prefix + "shaded ", render::GBufferKind::kSurface, work.shaded_views,
                         work.shaded_draws, {}, mesh_error_px(request.detail)));
-    NERITIC_TRY(out.color, declare_color(frame, prefix, shading, work.shaded_views,
+    NERITIC_TRY(out.color, declare_color(frame, prefix, shading, g, work.shaded_views,
                                          work.shaded_draws, request, work));
   } else if (capture.color) {
-    NERITIC_TRY(out.color, declare_color(frame, prefix, g, work.views, work.draws, request, work));
+    NERITIC_TRY(out.color,
+                declare_color(frame, prefix, g, g, work.views, work.draws, request, work));
   }
   if (!capture.to_host) return out;
   const auto bring = [&](const char* name, graph::ImageHandle image, VkFormat format) {

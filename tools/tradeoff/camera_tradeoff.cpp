@@ -33,7 +33,7 @@ std::vector<KnobSetting> settings_of(bool quick) {
     }
   };
   const auto whole = [](double value) { return static_cast<std::uint32_t>(value); };
-  knob("resolution", {0.25, 0.35, 0.5, 0.7, 0.85, 1.0},
+  knob("resolution", {0.25, 0.35, 0.5, 0.7, 0.85, 1.0, 2.0},
        [](PictureDetail& d, double v) { d.resolution = v; });
   knob("shadow_size", {0.125, 0.25, 0.5, 1.0, 2.0},
        [](PictureDetail& d, double v) { d.shadow_size = v; });

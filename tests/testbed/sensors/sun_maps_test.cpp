@@ -195,7 +195,8 @@ TEST(PictureDetailKeys, AreRefusedWithWhatIsAccepted) {
            {"quality = \"best\"\n", "standard"},
            {"quality = \"draft\"\nmax_error = 0.1\n", "no such key beside quality"},
            {"max_error = 1e-9\n", "at least"},
-           {"detail = {resolution = 2}\n", "[0.1, 1]"},
+           {"detail = {resolution = 1.5}\n", "[0.1, 1], 2, 3 or 4"},
+           {"detail = {resolution = 5}\n", "4"},
            {"detail = {resolutoin = 1}\n", "resolution"}}) {
     const auto scene = camera_with(keys);
     ASSERT_FALSE(scene.ok()) << keys;
