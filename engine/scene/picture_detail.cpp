@@ -21,8 +21,8 @@ constexpr std::array<PictureLevel, 3> kLevels{{
       .waves = 8,
       .shaft_samples = 0.5,
       .particles = 0.5},
-     0.07},
-    {"standard", {}, 0.035},
+     0.065},
+    {"standard", {}, 0.03},
     {"reference",
      {.resolution = 2.0,
       .shadow_size = 2.0,
@@ -31,7 +31,7 @@ constexpr std::array<PictureLevel, 3> kLevels{{
       .occlusion_samples = 4.0,
       .inscatter_samples = 16,
       .shaft_samples = 4.0},
-     0.001},
+     0.012},
 }};
 
 }  // namespace

@@ -25,16 +25,17 @@ struct PictureDetail {
   friend bool operator==(const PictureDetail&, const PictureDetail&) = default;
 };
 
+inline constexpr double kMostResolution = 4.0;
+
 inline constexpr std::string_view kPictureLevels[] = {"draft", "standard", "reference"};
 struct PictureLevel {
   std::string_view name;
   PictureDetail detail;
   // Root mean square difference of the display picture (1: from black to white) from the one with
-  // every knob at its best: the largest of the shipped scenes' first cameras.
+  // every knob at its best and a resolution of 4: the largest of the shipped scenes' first cameras.
   double error;
 };
 // From the cheapest to the best.
-inline constexpr double kMostResolution = 4.0;
 const PictureLevel& picture_level(std::string_view name);
 // The cheapest whose error is at most that; absent where none is.
 const PictureLevel* picture_level_within(double error);

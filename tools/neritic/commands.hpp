@@ -34,9 +34,10 @@ struct RenderFlags {
   bool sheet = false, validation = false;
   double chart_cell_m = 0.0;
   bool track_only = false;  // no frame folders: only what accumulates over the frames
-  std::string quality;      // of all sonars, for what the scene says; empty: as it says
-  bool own_rates = false;   // a sensor is in those frames only in which its rate makes it due
-  StepFileFlags files;      // of scenes with physics: the log
+  // Of all sonars, and of all cameras' pictures, for what the scene says; empty: as it says.
+  std::string quality, picture_quality;
+  bool own_rates = false;  // a sensor is in those frames only in which its rate makes it due
+  StepFileFlags files;     // of scenes with physics: the log
   std::optional<std::uint64_t> seed;  // instead of the scene's
   std::uint32_t runs = 0;             // 0: one, straight into out
 };

@@ -386,6 +386,9 @@ Result<std::string> render_once(const RenderFlags& asked, RenderedRun& told) {
   const SampleLog* log = recorded ? &*recorded : nullptr;
   NERITIC_TRY(scene::Scene scene, load(flags, log, physics_scene));
   if (flags.scene.empty()) flags.scene = scene.path;
+  if (!flags.picture_quality.empty())
+    for (scene::Camera& camera : scene.cameras)
+      camera.detail = scene::picture_level(flags.picture_quality).detail;
   told.seed = scene.seed;
   NERITIC_TRY(ChosenRender chosen, choose(flags, scene));
   LoopSensors& sensors = chosen.sensors;

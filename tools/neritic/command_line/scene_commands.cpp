@@ -70,6 +70,12 @@ void add_render(CLI::App& app, Run& run) {
                    "metres a cell of the charts of profiling sonars")
       ->check(between(0.001, 1000.0));
   add_quality(*command, flags->quality);
+  command
+      ->add_option("--picture-quality", flags->picture_quality,
+                   "how finely pictures are made, for what the cameras' quality, max_error and "
+                   "detail say (engine/render/TRADE.md)")
+      ->check(CLI::IsMember(std::vector<std::string>(std::begin(scene::kPictureLevels),
+                                                     std::end(scene::kPictureLevels))));
   command->add_flag("--track-only", flags->track_only,
                     "no frame folders: only what sonars accumulate over the frames (OUT/track)");
   command->add_flag(
