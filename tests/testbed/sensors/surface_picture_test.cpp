@@ -268,9 +268,10 @@ TEST_F(SurfacePicture, SunAtTheZenithOnTheHorizonAndBelowGivesFinitePictures) {
           EXPECT_GT(brightest, 0.0) << sun_deg << " " << height_m << " " << pitch_deg;
           // A sky without a sun is 1.75 times as bright at the horizon as overhead; water gathers
           // it n^2 times.
-          if (sun_deg <= 0.0)
+          if (sun_deg <= 0.0) {
             EXPECT_LT(brightest, 3.3 * sky.middle().y)
                 << sun_deg << " " << height_m << " " << pitch_deg;
+          }
         }
   }
 }
