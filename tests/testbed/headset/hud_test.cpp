@@ -133,7 +133,7 @@ TEST_F(HeadsetHud, TextIsUprightAndUnmirroredWhereEachEyesFrustumPutsIt) {
   NERITIC_ASSERT_STATUS(dive(scene_, 5));
   const hud::Layout& layout = hud::layout_of(hud::LayoutKind::kCorner);
   hud::Hud alone(layout.kind, hud::Units::kMetric, layout.height_px);
-  alone.update(instrument_data(physics_->world(), 0, physics_->newest()));
+  alone.update(instrument_data(physics_->world(), 0, physics_->newest()), 0.0);
   const auto tangent = [](double deg) { return std::tan(radians(deg)); };
   for (int eye = 0; eye < 2; ++eye) {
     const double side = eye == 0 ? -1.0 : 1.0;
