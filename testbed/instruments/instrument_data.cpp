@@ -6,6 +6,7 @@
 #include "diver/frames.hpp"
 #include "diver/kinematics.hpp"
 #include "diver/reach.hpp"
+#include "hud/numbers.hpp"
 #include "testbed/samples/authority_words.hpp"
 #include "testbed/simulation/diver_condition.hpp"
 #include "testbed/simulation/human_readings.hpp"
@@ -168,6 +169,12 @@ double diver_heading_rad(const Quat& ned_from_body) {
   const Vec3 ahead = head - head.z * belly;
   const double heading = std::atan2(ahead.y, ahead.x);
   return heading < 0.0 ? heading + 2.0 * kPi : heading;
+}
+
+DiverGauge gauge_of(const PhysicsHuman& human, const HumanPhysics& state) {
+  const double bar_per_m = human.computer->settings().conventions.environment.bar_per_m;
+  return {hud::standard_depth_m(state.human.life.computer.last.depth_m, bar_per_m),
+          diver_heading_rad(state.human.root.attitude)};
 }
 
 Pose world_from_wrist(const PhysicsHuman& human, const HumanPhysics& state) {

@@ -29,6 +29,13 @@ void add_links(const HumanPhysics& diver, const std::vector<DeviceHealth>& devic
 // back or on its head is given a heading too.
 double diver_heading_rad(const Quat& ned_from_body);
 
+// A diver's depth and heading as the diver's instruments show them: metres of EN 13319 at the depth
+// gauge, and diver_heading_rad.
+struct DiverGauge {
+  double depth_m = 0.0, heading_rad = 0.0;
+};
+DiverGauge gauge_of(const PhysicsHuman& human, const HumanPhysics& state);
+
 // The drawn left hand: origin at the wrist, axes of hud::Lock::kWrist.
 Pose world_from_wrist(const PhysicsHuman& human, const HumanPhysics& state);
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "testbed/instruments/instrument_data.hpp"
 #include "testbed/view/help_panel.hpp"
 #include "testbed/view/panel_frame.hpp"
 
@@ -111,6 +112,16 @@ void Console::note(std::string text) {
   note_until_ns_ = now_ns() + kNote_ns;
 }
 
+// What the instruments of a diver show; nothing for another object.
+std::optional<DiverGauge> Console::diver_gauge(int object) const {
+  if (!options_.physics) return {};
+  const auto& humans = options_.physics->world().humans();
+  for (std::size_t i = 0; i < humans.size(); ++i)
+    if (static_cast<int>(humans[i].object) == object)
+      return gauge_of(humans[i], options_.physics->shown().humans()[i]);
+  return {};
+}
+
 void Console::look(const scene::MotionSource& motion, double time_s, const DivePilot& pilot,
                    const Vec3& eye_m) {
   if (!show_panels_) return;
@@ -127,9 +138,14 @@ void Console::look(const scene::MotionSource& motion, double time_s, const DiveP
     // In fast time the picture's time is ahead of the newest state by so much.
     if (held && behind_s > usual_lag_s(options_.clock))
       doing += fmt::format("{}no state for {:.1f} s", doing.empty() ? "" : ", ", behind_s);
-    rows_.push_back({one.name, std::move(doing), -at.pose.position_m.y,
-                     glm::length(at.velocity_m_s), glm::distance(at.pose.position_m, eye_m)});
-    marks_.push_back({one.name, at.pose.position_m, -course_of(at.pose.rotation)});
+    double depth_m = -at.pose.position_m.y, course_rad = -course_of(at.pose.rotation);
+    if (const auto gauge = diver_gauge(one.mount.object)) {
+      course_rad = gauge->heading_rad;
+      if (depth_m > 0.0) depth_m = gauge->depth_m;  // above water the gauge says nothing
+    }
+    rows_.push_back({one.name, std::move(doing), depth_m, glm::length(at.velocity_m_s),
+                     glm::distance(at.pose.position_m, eye_m)});
+    marks_.push_back({one.name, at.pose.position_m, course_rad});
   }
   trails_.add(marks_, time_s);
 }

@@ -14,6 +14,7 @@
 #include "engine/xr/desktop/overlay.hpp"
 #include "engine/xr/display.hpp"
 #include "testbed/devices/devices.hpp"
+#include "testbed/instruments/instrument_data.hpp"
 #include "testbed/sensors/participants.hpp"
 #include "testbed/sensors/session.hpp"
 #include "testbed/view/dive_fan.hpp"
@@ -87,6 +88,7 @@ class Console {
   Console(Session& session, xr::Overlay& overlay, const ConsoleOptions& options);
   PanelFacts facts(graph::FrameGraph& graph, const ConsoleFrame& frame);
   std::string recording() const;
+  std::optional<DiverGauge> diver_gauge(int object) const;
   Readout readout(const ConsoleFrame& frame) const;
   std::string standing_hint() const;
   void draw(graph::FrameGraph& graph, const ConsoleFrame& frame);

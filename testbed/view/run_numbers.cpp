@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "hud/numbers.hpp"
 #include "rov/frames.hpp"
 #include "testbed/instruments/instrument_data.hpp"
 
@@ -39,10 +40,11 @@ void RunNumbers::add_divers(const PhysicsWorld& world,
     const std::string& name = world.humans()[i].name;
     const hud::DiveData data = instrument_data(world, i, snapshot);
     const diver::RootState& root = snapshot.state.humans()[i].human.root;
-    add(name + " depth", "m", root.position_ned_m.z, true);
+    add(name + " depth", "m", gauge_of(world.humans()[i], snapshot.state.humans()[i]).depth_m,
+        true);
     add(name + " speed", "m/s", glm::length(root.velocity.linear()));
     add(name + " ascent", "m/min", data.ascent_m_min);
-    add(name + " ceiling", "m", data.ceiling_m, true);
+    add(name + " ceiling", "m", hud::standard_depth_m(data.ceiling_m, data.bar_per_m), true);
     add(name + " no-stop time", "min", data.no_stop_min);
     add(name + " time to surface", "min", data.to_surface_min);
     add(name + " tank", "bar", 1e-5 * data.tank_pa);

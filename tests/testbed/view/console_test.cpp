@@ -5,9 +5,11 @@
 #include <cmath>
 #include <fstream>
 
+#include "testbed/instruments/instrument_data.hpp"
 #include "testbed/view/dive_panels.hpp"
 #include "testbed/view/gauge_panel.hpp"
 #include "testbed/view/map_panel.hpp"
+#include "testbed/view/panel_frame.hpp"
 #include "testbed/view/picker.hpp"
 #include "testbed/view/run_numbers.hpp"
 #include "testbed/view/view_memory.hpp"
@@ -64,6 +66,31 @@ TEST(Readout, SaysWhoseDepthAndHeadingItIsInTheUnitsOfTheDive) {
             "diver  depth 40.3 m  heading 091\u00b0");
   EXPECT_EQ(readout_words({"camera", -1.5, 0.0, 2}, hud::Units::kImperial),
             "camera  4.9 ft above water  heading 000\u00b0");
+}
+
+// On one screen a diver has one depth and one heading: the instruments', the readout's, the
+// graphs'.
+TEST(Readout, OfADiverHasTheDepthAndTheHeadingOfTheInstruments) {
+  TestDive dive =
+      dive_of("[physics]\n" + diver_text(std::string("position_m = [4, -52, 0]\n") + kProne));
+  dive.run(3.0);
+  const auto& snapshot = dive.simulation->newest();
+  const hud::DiveData data = instrument_data(*dive.world, 0, snapshot);
+  const DiverGauge gauge = gauge_of(dive.world->humans()[0], snapshot.state.humans()[0]);
+  const double true_m = snapshot.state.humans()[0].human.root.position_ned_m.z;
+  RunNumbers numbers;
+  numbers.look(*dive.world, snapshot, 20.0, 1.0);
+  EXPECT_EQ(number(numbers, "diver depth").newest, gauge.depth_m);
+  for (const hud::Units units : {hud::Units::kMetric, hud::Units::kImperial}) {
+    const hud::Shown shown =
+        hud::shown_of(hud::LayoutKind::kMask, units, data, {}, {}, {}, data.time_s);
+    EXPECT_EQ(readout_words({"diver", gauge.depth_m, gauge.heading_rad, 1}, units),
+              fmt::format("diver  depth {} {}  heading {}\u00b0", shown.depth.view(),
+                          hud::unit_names(units).depth, shown.heading.view()));
+    // Otherwise the test could not fail.
+    EXPECT_NE(length_text(true_m, 1, units).substr(0, shown.depth.view().size()),
+              shown.depth.view());
+  }
 }
 
 TEST(MapTrails, AreBoundedAndTheMapHoldsThemAll) {
