@@ -8,8 +8,7 @@
 namespace neritic::hud {
 namespace {
 
-constexpr double kFeet = 1.0 / 0.3048, kPsi_pa = 6894.757293168;  // exact; lbf over square inch
-constexpr double kLitresAPint = 0.473176473, kPound_kg = 0.45359237;
+constexpr double kFeet = 1.0 / kFoot_m, kPound_kg = 0.45359237;
 // Rounding errors of summed steps are no reason to round away.
 constexpr double kDust = 1e-6;
 constexpr double kDeepest_m = 999.0, kMostMinutes = 999.0, kMostLeft_min = 99.0;
@@ -128,7 +127,7 @@ FixedText heading_text(double rad) {
 FixedText litres_text(double m3, Units units) {
   const double litres = 1e3 * m3;
   if (!(litres >= -kDust && litres <= 99.0)) return "-.-";
-  const double shown = positive(units == Units::kImperial ? litres / kLitresAPint : litres);
+  const double shown = positive(units == Units::kImperial ? litres / kPint_l : litres);
   return FixedText::of("{:.1f}", shown);
 }
 

@@ -42,6 +42,11 @@ FixedText litres_text(double m3, Units units);      // "3.2" litres, or pints
 FixedText weight_text(double newton, Units units);  // "1.4" kg or lb, size only
 FixedText beats_text(double bpm);
 
+// Exact, but for the last digits of the pound-force.
+inline constexpr double kFoot_m = 0.3048, kCubicFoot_l = 28.316846592;
+inline constexpr double kPsi_pa = 6894.757293168, kPoundForce_n = 4.4482216152605;
+inline constexpr double kPint_l = 0.473176473;
+
 struct UnitNames {
   const char *depth, *pressure, *rate, *volume, *weight;
 };

@@ -51,8 +51,10 @@ void draw_card(ImDrawList& list, double heading_deg, float x, float y, float hal
                          kMark);
 }
 
-void draw_rings(ImDrawList& list, const SonarPanel& panel, ImVec2 corner, ImVec2 size) {
+void draw_rings(ImDrawList& list, const SonarPanel& panel, ImVec2 corner, ImVec2 size,
+                hud::Units units) {
   const sonar::Limits& l = panel.grid.limits;
+  const LengthUnit unit = length_unit(units);
   // About this number of rings; a smaller first range has no room for its label.
   constexpr double kRings = 6.0, kLeastLabelled = 0.06;
   const auto at = [&](double range_m, double bearing_rad) {
@@ -72,7 +74,7 @@ void draw_rings(ImDrawList& list, const SonarPanel& panel, ImVec2 corner, ImVec2
   std::optional<ImVec2> last;
   const auto label = [&](double range_m) {
     const ImVec2 edge = at(range_m, l.azimuth_max_rad);
-    const std::string text = fmt::format("{:.3g} m", range_m);
+    const std::string text = fmt::format("{:.3g} {}", range_m / unit.m, unit.name);
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     if (last && std::abs(last->y - edge.y) < size.y && std::abs(last->x - edge.x) < size.x + 4.0f)
       return;
@@ -83,7 +85,7 @@ void draw_rings(ImDrawList& list, const SonarPanel& panel, ImVec2 corner, ImVec2
   };
   arc(l.range_max_m, kRim);
   label(l.range_max_m);
-  const double step = draw2d::nice_step(l.range_max_m, kRings);
+  const double step = unit.m * draw2d::nice_step(l.range_max_m / unit.m, kRings);
   for (double range_m = step * std::ceil(l.range_max_m / step - 0.65);
        range_m > l.range_min_m + 0.5 * step && range_m > 0.5 * step; range_m -= step) {
     if (range_m > l.range_max_m - 0.35 * step) continue;
@@ -103,20 +105,23 @@ void draw_rings(ImDrawList& list, const SonarPanel& panel, ImVec2 corner, ImVec2
                 fmt::format("{:.0f}\u00b0", degrees(middle)));
 }
 
-void draw_sonar(const SonarPanel& panel, const PanelRect& rect, double gain_db, float scale) {
+void draw_sonar(const SonarPanel& panel, const PanelRect& rect, double gain_db, hud::Units units,
+                float scale) {
   const sonar::Limits& l = panel.grid.limits;
   begin_panel(panel.name + "###sonar " + panel.name, rect, scale, ImGuiWindowFlags_NoScrollbar);
   const std::string settings =
-      fmt::format("{:.3g} to {:.3g} m  {:.0f}\u00b0 x {:.0f}\u00b0  {:g} Hz{}", l.range_min_m,
-                  l.range_max_m, degrees(l.azimuth_max_rad - l.azimuth_min_rad),
+      fmt::format("{}  {:.0f}\u00b0 x {:.0f}\u00b0  {:g} Hz{}", range_words(l, units),
+                  degrees(l.azimuth_max_rad - l.azimuth_min_rad),
                   degrees(l.elevation_max_rad - l.elevation_min_rad), panel.rate_hz,
                   gain_db == 0.0 ? "" : fmt::format("  {:+g} dB", gain_db));
   const float inner = ImGui::GetContentRegionAvail().x;
   const bool fits = ImGui::CalcTextSize(settings.c_str()).x <= inner;
-  ImGui::TextDisabled("%s", fits ? settings.c_str()
-                                 : fmt::format("{:.3g} m  {:.0f}\u00b0", l.range_max_m,
-                                               degrees(l.azimuth_max_rad - l.azimuth_min_rad))
-                                       .c_str());
+  ImGui::TextDisabled(
+      "%s",
+      fits ? settings.c_str()
+           : fmt::format("{:.3g} {}  {:.0f}\u00b0", l.range_max_m / length_unit(units).m,
+                         length_unit(units).name, degrees(l.azimuth_max_rad - l.azimuth_min_rad))
+                 .c_str());
   const FanFrame frame;
   const float aspect =
       static_cast<float>(panel.shape.height) / static_cast<float>(panel.shape.width);
@@ -128,7 +133,7 @@ void draw_sonar(const SonarPanel& panel, const PanelRect& rect, double gain_db, 
   ImDrawList& list = *ImGui::GetWindowDrawList();
   if (panel.picture)
     list.AddImage(panel.picture, corner, ImVec2(corner.x + width, corner.y + height));
-  draw_rings(list, panel, corner, ImVec2(width, height));
+  draw_rings(list, panel, corner, ImVec2(width, height), units);
   ImGui::End();
 }
 
@@ -335,9 +340,9 @@ void draw_on_demand(const PanelFacts& facts, const PanelsShown& shown, const Dem
     draw_gauges(*facts.gauges, at, facts.units, scale);
   if (const PanelRect at = place(demand.inset); !at.empty()) draw_inset(*facts.inset, at, scale);
   if (const PanelRect at = place(demand.map); !at.empty())
-    draw_map(facts.marks, facts.eye, *shown.trails, at, scale);
+    draw_map(facts.marks, facts.eye, *shown.trails, at, facts.units, scale);
   if (const PanelRect at = place(demand.graphs); !at.empty())
-    draw_graphs(*shown.numbers, *shown.graphs, at, scale);
+    draw_graphs(*shown.numbers, *shown.graphs, at, facts.units, scale);
 }
 
 }  // namespace
@@ -354,6 +359,12 @@ std::string hint_words(const std::string& hint, const std::vector<std::string>& 
   if (!layout.fans.empty() && more > 0)
     words += fmt::format("   Tab  {} more sonar{}", more, more > 1 ? "s" : "");
   return words;
+}
+
+std::string range_words(const sonar::Limits& limits, hud::Units units) {
+  const LengthUnit unit = length_unit(units);
+  return fmt::format("{:.3g} to {:.3g} {}", limits.range_min_m / unit.m,
+                     limits.range_max_m / unit.m, unit.name);
 }
 
 std::string readout_words(const Readout& readout, hud::Units units) {
@@ -384,7 +395,7 @@ void draw_panels(const PanelFacts& facts, const PanelsShown& shown, TimeNs now_n
   if (!layout.readout.empty()) draw_readout(facts, layout.readout, scale);
   if (!layout.status.empty()) draw_status(facts, shown, layout.status, scale);
   for (std::size_t i = 0; i < layout.fans.size(); ++i)
-    draw_sonar(*sonars[i], layout.fans[i], facts.sonar_gain_db, scale);
+    draw_sonar(*sonars[i], layout.fans[i], facts.sonar_gain_db, facts.units, scale);
   draw_on_demand(facts, shown, demand, layout.extras, now_ns, scale);
   if (!layout.hint.empty())
     draw_hint(hint_words(shown.hint, demand.names, layout, sonars.size()), scale, layout.hint);

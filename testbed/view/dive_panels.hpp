@@ -60,7 +60,7 @@ struct PanelFacts {
   std::string recording;              // "REC 0:12  FILE"; empty: nothing is recorded
   double sonar_gain_db = 0.0;
   Readout readout;
-  hud::Units units = hud::Units::kMetric;  // of participants, gauges and the readout
+  hud::Units units = hud::Units::kMetric;
   // On demand; those that are absent are not drawn.
   std::optional<VehicleGauges> gauges;
   std::optional<InsetPanel> inset;
@@ -86,6 +86,8 @@ struct PanelsShown {
 std::string hint_words(const std::string& hint, const std::vector<std::string>& wished,
                        const PanelLayout& layout, std::size_t sonars);
 void draw_panels(const PanelFacts& facts, const PanelsShown& shown, TimeNs now_ns, float scale);
+// "0.5 to 10 m"
+std::string range_words(const sonar::Limits& limits, hud::Units units);
 // "diver  depth 12.3 m  heading 091°"
 std::string readout_words(const Readout& readout, hud::Units units);
 // Where the panels are hidden: one line at the lower edge; the light of a recording.

@@ -5,6 +5,7 @@
 #include "hud/numbers.hpp"
 #include "rov/frames.hpp"
 #include "testbed/samples/authority_words.hpp"
+#include "testbed/view/panel_frame.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -127,9 +128,8 @@ std::string DivePilot::doing(std::size_t object, hud::Units units) const {
     const diver::GasReading gas =
         diver::read_gas(humans[i].body, physics_->shown().humans()[i].human);
     // As the diver's own instruments round it, to the safe side.
-    return fmt::format("{} {} left, breathes {:.0f} l/min",
-                       hud::pressure_text(gas.tank_pa, units).view(),
-                       hud::unit_names(units).pressure, gas.ventilation_l_min);
+    return fmt::format("{} {} left, breathes {}", hud::pressure_text(gas.tank_pa, units).view(),
+                       hud::unit_names(units).pressure, flow_text(gas.ventilation_l_min, units));
   }
   return {};
 }

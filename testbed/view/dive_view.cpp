@@ -394,7 +394,7 @@ Status DiveView::end_frame(std::optional<std::uint64_t> value) {
     screenshots_.submitted(*value);
     picker_.submitted(*value);
   }
-  if (auto picked = picker_.take(completed, session_.scene()); picked && console_)
+  if (auto picked = picker_.take(completed, session_.scene(), options_.units); picked && console_)
     console_->mark(std::move(*picked));
   NERITIC_TRY_STATUS(screenshots_.write_done(completed));
   if (const auto note = screenshots_.take_note()) tell(*note);

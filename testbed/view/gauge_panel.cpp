@@ -77,6 +77,11 @@ VehicleGauges gauges_of(const PhysicsWorld& world, const PhysicsState& state, st
   return out;
 }
 
+std::string tether_words(const VehicleGauges& gauges, hud::Units units) {
+  return fmt::format("tether {}, {:.0f} % of its length out{}", force_text(gauges.tether_n, units),
+                     100.0 * gauges.tether_used, gauges.tether_touching > 0 ? ", it touches" : "");
+}
+
 PanelWish gauges_wish(const VehicleGauges& gauges) {
   const auto rows = static_cast<float>(gauges.thrust.size()) + (gauges.tether_used > 0.0 ? 1 : 0) +
                     (gauges.battery ? 2 : 0);
@@ -99,10 +104,7 @@ void draw_gauges(const VehicleGauges& gauges, const PanelRect& rect, hud::Units 
     thrust_bar(list, ImVec2(from.x + label, from.y), ImVec2(width, line), gauges.thrust[i],
                gauges.failed[i]);
   }
-  if (gauges.tether_used > 0.0)
-    text_line(fmt::format("tether {:.0f} N, {:.0f} % of its length out{}", gauges.tether_n,
-                          100.0 * gauges.tether_used,
-                          gauges.tether_touching > 0 ? ", it touches" : ""));
+  if (gauges.tether_used > 0.0) text_line(tether_words(gauges, units));
   if (gauges.battery) {
     text_line(battery_words(*gauges.battery));
     charge_bar(list, ImGui::GetCursorScreenPos(),

@@ -27,6 +27,8 @@ struct VehicleGauges {
 // The gauges of the vehicle with that number.
 VehicleGauges gauges_of(const PhysicsWorld& world, const PhysicsState& state, std::size_t vehicle);
 
+// "tether 12 N, 80 % of its length out, it touches"
+std::string tether_words(const VehicleGauges& gauges, hud::Units units);
 PanelWish gauges_wish(const VehicleGauges& gauges);
 void draw_gauges(const VehicleGauges& gauges, const PanelRect& rect, hud::Units units, float scale);
 

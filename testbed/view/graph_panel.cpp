@@ -55,17 +55,6 @@ void draw_curve(ImDrawList& list, const RunNumbers& numbers, const RunNumber& nu
   }
 }
 
-// "diver depth   16.2 m   (15.9 to 16.3)"
-std::string caption(const RunNumbers& numbers, const RunNumber& number) {
-  const Span span = span_of(numbers, number);
-  const std::string newest = std::isfinite(number.newest)
-                                 ? fmt::format("{:.4g} {}", number.newest, number.unit)
-                                 : "not known";
-  return span.empty() ? fmt::format("{}   {}", number.name, newest)
-                      : fmt::format("{}   {}   ({:.3g} to {:.3g})", number.name, newest, span.low,
-                                    span.high);
-}
-
 // The list of what is not shown yet.
 void choose(const RunNumbers& numbers, GraphChoice& choice) {
   if (choice.names.size() >= kMostGraphs) return;
@@ -80,13 +69,24 @@ void choose(const RunNumbers& numbers, GraphChoice& choice) {
 
 }  // namespace
 
+std::string caption(const RunNumber& number, double low, double high, hud::Units units) {
+  const NumberUnit& unit = number.unit;
+  const std::string newest =
+      std::isfinite(number.newest)
+          ? fmt::format("{:.4g} {}", unit.shown(number.newest, units), unit.name(units))
+          : "not known";
+  return low > high ? fmt::format("{}   {}", number.name, newest)
+                    : fmt::format("{}   {}   ({:.3g} to {:.3g})", number.name, newest,
+                                  unit.shown(low, units), unit.shown(high, units));
+}
+
 PanelWish graphs_wish(const GraphChoice& choice) {
   const auto count = static_cast<float>(std::max<std::size_t>(1, choice.names.size()));
   return {.wanted = kAround_px + count * kGraph_px, .least = kAround_px + kLeastGraph_px};
 }
 
 void draw_graphs(const RunNumbers& numbers, GraphChoice& choice, const PanelRect& rect,
-                 float scale) {
+                 hud::Units units, float scale) {
   begin_panel("Last 2 minutes###graphs", rect, scale);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float line = ImGui::GetTextLineHeightWithSpacing();
@@ -101,7 +101,8 @@ void draw_graphs(const RunNumbers& numbers, GraphChoice& choice, const PanelRect
     ImGui::PushID(name.c_str());
     if (ImGui::SmallButton("x")) removed = name;
     ImGui::SameLine();
-    text_line(caption(numbers, *number));
+    const Span span = span_of(numbers, *number);
+    text_line(caption(*number, span.low, span.high, units));
     const ImVec2 from = ImGui::GetCursorScreenPos();
     const ImVec2 size(room.x, each - ImGui::GetStyle().ItemSpacing.y);
     draw_curve(list, numbers, *number, from, size, scale);

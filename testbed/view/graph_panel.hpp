@@ -20,6 +20,8 @@ struct GraphChoice {
 PanelWish graphs_wish(const GraphChoice& choice);
 // Adds and removes what the user clicks.
 void draw_graphs(const RunNumbers& numbers, GraphChoice& choice, const PanelRect& rect,
-                 float scale);
+                 hud::Units units, float scale);
+// "diver depth   16.2 m   (15.9 to 16.3)"; low above high: nothing is known.
+std::string caption(const RunNumber& number, double low, double high, hud::Units units);
 
 }  // namespace neritic::testbed

@@ -83,8 +83,13 @@ PanelRect label_place(const Vec2& at, float off, const Vec2& size, const PanelRe
   return {};
 }
 
+std::string grid_words(double step_m, hud::Units units) {
+  const LengthUnit unit = length_unit(units);
+  return fmt::format("grid {:g} {}", step_m / unit.m, unit.name);
+}
+
 void draw_map(const std::vector<MapMark>& marks, const MapMark& eye, const MapTrails& trails,
-              const PanelRect& rect, float scale) {
+              const PanelRect& rect, hud::Units units, float scale) {
   begin_panel("Map, north up###map", rect, scale, ImGuiWindowFlags_NoScrollbar);
   const MapFrame frame = map_frame(marks, trails);
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -97,7 +102,8 @@ void draw_map(const std::vector<MapMark>& marks, const MapMark& eye, const MapTr
     return ImVec2(from.x + 0.5f * room.x + static_cast<float>((p.x - frame.middle.x) * px_per_m),
                   from.y + 0.5f * room.y - static_cast<float>((p.y - frame.middle.y) * px_per_m));
   };
-  const double step = draw2d::nice_step(frame.side_m, 4.0);
+  const double unit_m = length_unit(units).m;
+  const double step = unit_m * draw2d::nice_step(frame.side_m / unit_m, 4.0);
   const auto lines = [&](double middle, double half, auto draw) {
     for (double at = step * std::ceil((middle - half) / step); at <= middle + half; at += step)
       draw(at);
@@ -110,7 +116,7 @@ void draw_map(const std::vector<MapMark>& marks, const MapMark& eye, const MapTr
     const float y = place({0.0, north}).y;
     list.AddLine(ImVec2(from.x, y), ImVec2(to.x, y), kLine);
   });
-  const std::string grid = fmt::format("grid {:g} m", step);
+  const std::string grid = grid_words(step, units);
   const ImVec2 grid_size = ImGui::CalcTextSize(grid.c_str());
   std::vector<PanelRect> labels{
       {from.x + 4.0f * scale, to.y - grid_size.y - 2.0f * scale, grid_size.x, grid_size.y}};

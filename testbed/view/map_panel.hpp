@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/core/math.hpp"
+#include "hud/numbers.hpp"
 #include "testbed/view/panel_layout.hpp"
 
 namespace neritic::testbed {
@@ -47,6 +48,8 @@ PanelRect label_place(const Vec2& at, float off, const Vec2& size, const PanelRe
 
 inline constexpr PanelWish kMapWish{.wanted = 300.0f, .least = 180.0f};
 void draw_map(const std::vector<MapMark>& marks, const MapMark& eye, const MapTrails& trails,
-              const PanelRect& rect, float scale);
+              const PanelRect& rect, hud::Units units, float scale);
+// "grid 5 m", of so many metres
+std::string grid_words(double step_m, hud::Units units);
 
 }  // namespace neritic::testbed

@@ -4,11 +4,6 @@
 #include <cmath>
 
 namespace neritic::testbed {
-namespace {
-
-constexpr double kFoot_m = 0.3048;  // exact
-
-}  // namespace
 
 void begin_panel(const std::string& title, const PanelRect& rect, float scale, int flags) {
   ImGui::SetNextWindowPos(ImVec2(rect.x * scale, rect.y * scale));
@@ -29,14 +24,28 @@ std::string metres_text(double m, int decimals) {
 
 std::string length_text(double m, int decimals, hud::Units units) {
   if (units == hud::Units::kMetric) return metres_text(m, decimals);
-  std::string text = metres_text(m / kFoot_m, std::max(0, decimals - 1));
+  std::string text = metres_text(m / hud::kFoot_m, std::max(0, decimals - 1));
   text.replace(text.size() - 1, 1, "ft");
   return text;
 }
 
 std::string speed_text(double m_s, hud::Units units) {
   return units == hud::Units::kMetric ? fmt::format("{:.2f} m/s", m_s)
-                                      : fmt::format("{:.1f} ft/s", m_s / kFoot_m);
+                                      : fmt::format("{:.1f} ft/s", m_s / hud::kFoot_m);
+}
+
+std::string force_text(double n, hud::Units units) {
+  return units == hud::Units::kMetric ? fmt::format("{:.0f} N", n)
+                                      : fmt::format("{:.0f} lbf", n / hud::kPoundForce_n);
+}
+
+std::string flow_text(double l_min, hud::Units units) {
+  return units == hud::Units::kMetric ? fmt::format("{:.0f} l/min", l_min)
+                                      : fmt::format("{:.2f} cu ft/min", l_min / hud::kCubicFoot_l);
+}
+
+LengthUnit length_unit(hud::Units units) {
+  return units == hud::Units::kMetric ? LengthUnit{} : LengthUnit{hud::kFoot_m, "ft"};
 }
 
 void text_line(const std::string& text) {

@@ -37,6 +37,15 @@ std::string metres_text(double m, int decimals);
 std::string length_text(double m, int decimals, hud::Units units);
 // "0.80 m/s" or "2.6 ft/s".
 std::string speed_text(double m_s, hud::Units units);
+// "12 N" or "3 lbf"; "28 l/min" or "1.00 cu ft/min".
+std::string force_text(double n, hud::Units units);
+std::string flow_text(double l_min, hud::Units units);
+// The metres of a unit of length, and its name.
+struct LengthUnit {
+  double m = 1.0;
+  const char* name = "m";
+};
+LengthUnit length_unit(hud::Units units);
 // Its middle is at x, its top at y.
 void centered_text(ImDrawList& list, float x, float y, ImU32 color, const std::string& text);
 

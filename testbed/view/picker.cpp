@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/render/renderer.hpp"
+#include "testbed/view/panel_frame.hpp"
 
 namespace neritic::testbed {
 
@@ -46,7 +47,12 @@ void Picker::submitted(std::uint64_t value) {
   if (pick_ && pick_->declared && pick_->done == 0) pick_->done = value;
 }
 
-std::optional<Picked> Picker::take(std::uint64_t completed, const scene::Scene& scene) {
+std::string picked_words(const std::string& label, double distance_m, hud::Units units) {
+  return fmt::format("{}, {}", label, length_text(distance_m, 2, units));
+}
+
+std::optional<Picked> Picker::take(std::uint64_t completed, const scene::Scene& scene,
+                                   hud::Units units) {
   if (!pick_ || pick_->done == 0 || pick_->done > completed) return std::nullopt;
   const Pick pick = std::move(*pick_);
   pick_.reset();
@@ -57,8 +63,7 @@ std::optional<Picked> Picker::take(std::uint64_t completed, const scene::Scene& 
   if (words.empty() || !(depth > 0.0)) return Picked{pick.at, "open water"};
   const FrustumTangents& t = pick.tangents;
   const Vec3 ray(glm::mix(t.left, t.right, pick.at.x), glm::mix(t.top, t.bottom, pick.at.y), -1.0);
-  return Picked{pick.at,
-                fmt::format("{}, {:.2f} m", words, pick.near_m / depth * glm::length(ray))};
+  return Picked{pick.at, picked_words(words, pick.near_m / depth * glm::length(ray), units)};
 }
 
 }  // namespace neritic::testbed

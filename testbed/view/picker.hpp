@@ -8,6 +8,7 @@
 
 #include "engine/gpu/device.hpp"
 #include "engine/scene/scene.hpp"
+#include "hud/numbers.hpp"
 #include "testbed/sensors/readback.hpp"
 #include "testbed/sensors/sensor_frame.hpp"
 
@@ -27,7 +28,7 @@ class Picker {
   Status declare(graph::FrameGraph& graph, const SensorFrame::Views& views);
   void submitted(std::uint64_t value);
   // Once, when that frame is done.
-  std::optional<Picked> take(std::uint64_t completed, const scene::Scene& scene);
+  std::optional<Picked> take(std::uint64_t completed, const scene::Scene& scene, hud::Units units);
 
  private:
   struct Pick {
@@ -47,5 +48,7 @@ class Picker {
 // The words of a label: an object's name and class. Empty: nothing is there.
 std::string words_of_label(const scene::Scene& scene, std::uint16_t class_id,
                            std::uint16_t instance);
+// The words of a label with how far it is.
+std::string picked_words(const std::string& label, double distance_m, hud::Units units);
 
 }  // namespace neritic::testbed

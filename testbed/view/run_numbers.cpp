@@ -8,8 +8,22 @@
 #include "testbed/instruments/instrument_data.hpp"
 
 namespace neritic::testbed {
+namespace {
 
-void RunNumbers::add(const std::string& name, const char* unit, double value, bool down) {
+constexpr NumberUnit kLengthUnit{"m", "ft", hud::kFoot_m},
+    kVelocityUnit{"m/s", "ft/s", hud::kFoot_m};
+constexpr NumberUnit kRiseUnit{"m/min", "ft/min", hud::kFoot_m};
+constexpr NumberUnit kForceUnit{"N", "lbf", hud::kPoundForce_n};
+constexpr NumberUnit kTankUnit{"bar", "psi", 1e-5 * hud::kPsi_pa},
+    kVolumeUnit{"l", "pt", hud::kPint_l};
+// The same in both.
+constexpr NumberUnit kOxygenUnit{"bar"}, kMinutesUnit{"min"}, kRateUnit{"/min"}, kAngleUnit{"deg"},
+    kShareUnit{"%"};
+constexpr NumberUnit kMillisecondsUnit{"ms"};
+
+}  // namespace
+
+void RunNumbers::add(const std::string& name, const NumberUnit& unit, double value, bool down) {
   if (next_ == all_.size()) {
     all_.push_back({name, unit, down, value, {}});
     all_.back().kept.assign(kNumbersKept, std::numeric_limits<float>::quiet_NaN());
@@ -23,14 +37,14 @@ void RunNumbers::add_vehicles(const PhysicsWorld& world, const PhysicsState& sta
   for (std::size_t i = 0; i < world.vehicles().size(); ++i) {
     const PhysicsVehicle& vehicle = world.vehicles()[i];
     const rov::State& body = state.vehicles()[i].body;
-    add(vehicle.name + " depth", "m", body.position_ned_m.z, true);
-    add(vehicle.name + " speed", "m/s", glm::length(body.velocity.linear()));
-    add(vehicle.name + " heading", "deg", degrees(rov::heading_of(body.attitude)));
+    add(vehicle.name + " depth", kLengthUnit, body.position_ned_m.z, true);
+    add(vehicle.name + " speed", kVelocityUnit, glm::length(body.velocity.linear()));
+    add(vehicle.name + " heading", kAngleUnit, degrees(rov::heading_of(body.attitude)));
     double thrust_n = 0.0;
     const auto forces = rov::thruster_forces(vehicle.vehicle, body, body.held);
     for (std::size_t k = 0; k < vehicle.vehicle.thruster_count; ++k)
       thrust_n += std::abs(forces[k]);
-    add(vehicle.name + " thrust", "N", thrust_n);
+    add(vehicle.name + " thrust", kForceUnit, thrust_n);
   }
 }
 
@@ -40,22 +54,23 @@ void RunNumbers::add_divers(const PhysicsWorld& world,
     const std::string& name = world.humans()[i].name;
     const hud::DiveData data = instrument_data(world, i, snapshot);
     const diver::RootState& root = snapshot.state.humans()[i].human.root;
-    add(name + " depth", "m", gauge_of(world.humans()[i], snapshot.state.humans()[i]).depth_m,
+    add(name + " depth", kLengthUnit,
+        gauge_of(world.humans()[i], snapshot.state.humans()[i]).depth_m, true);
+    add(name + " speed", kVelocityUnit, glm::length(root.velocity.linear()));
+    add(name + " ascent", kRiseUnit, data.ascent_m_min);
+    add(name + " ceiling", kLengthUnit, hud::standard_depth_m(data.ceiling_m, data.bar_per_m),
         true);
-    add(name + " speed", "m/s", glm::length(root.velocity.linear()));
-    add(name + " ascent", "m/min", data.ascent_m_min);
-    add(name + " ceiling", "m", hud::standard_depth_m(data.ceiling_m, data.bar_per_m), true);
-    add(name + " no-stop time", "min", data.no_stop_min);
-    add(name + " time to surface", "min", data.to_surface_min);
-    add(name + " tank", "bar", 1e-5 * data.tank_pa);
-    add(name + " gas left", "min", data.gas_min);
-    add(name + " pO2", "bar", data.po2_bar);
-    add(name + " CNS", "%", data.cns_percent);
-    add(name + " jacket", "l", 1e3 * data.jacket_m3);
-    add(name + " net weight", "N", data.net_weight_n);
-    add(name + " heart", "/min", data.heart_bpm);
-    add(name + " breath", "/min", data.breath_bpm);
-    add(name + " lungs", "l", 1e3 * data.lungs_m3);
+    add(name + " no-stop time", kMinutesUnit, data.no_stop_min);
+    add(name + " time to surface", kMinutesUnit, data.to_surface_min);
+    add(name + " tank", kTankUnit, 1e-5 * data.tank_pa);
+    add(name + " gas left", kMinutesUnit, data.gas_min);
+    add(name + " pO2", kOxygenUnit, data.po2_bar);
+    add(name + " CNS", kShareUnit, data.cns_percent);
+    add(name + " jacket", kVolumeUnit, 1e3 * data.jacket_m3);
+    add(name + " net weight", kForceUnit, data.net_weight_n);
+    add(name + " heart", kRateUnit, data.heart_bpm);
+    add(name + " breath", kRateUnit, data.breath_bpm);
+    add(name + " lungs", kVolumeUnit, 1e3 * data.lungs_m3);
   }
 }
 
@@ -76,8 +91,8 @@ void RunNumbers::look(const PhysicsWorld& world, const sim::Snapshot<PhysicsStat
   next_ = 0;
   add_divers(world, snapshot);
   add_vehicles(world, snapshot.state);
-  add("frame", "ms", frame_ms);
-  add("view's resolution", "%", 100.0 * view_scale);
+  add("frame", kMillisecondsUnit, frame_ms);
+  add("view's resolution", kShareUnit, 100.0 * view_scale);
 }
 
 }  // namespace neritic::testbed

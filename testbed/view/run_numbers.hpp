@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/sim/snapshot.hpp"
+#include "hud/numbers.hpp"
 #include "testbed/simulation/physics_world.hpp"
 
 namespace neritic::testbed {
@@ -15,8 +16,21 @@ inline constexpr double kNumbers_hz = 4.0;
 inline constexpr double kNumbersShown_s = 120.0;
 inline constexpr auto kNumbersKept = static_cast<std::size_t>(kNumbersShown_s * kNumbers_hz);
 
+// A number's unit, metric and imperial, and the metric units that the imperial one has.
+struct NumberUnit {
+  const char *metric = "", *imperial = metric;
+  double size = 1.0;
+  const char* name(hud::Units units) const {
+    return units == hud::Units::kMetric ? metric : imperial;
+  }
+  double shown(double value, hud::Units units) const {
+    return units == hud::Units::kMetric ? value : value / size;
+  }
+};
+
 struct RunNumber {
-  std::string name, unit;   // "diver depth", "m"
+  std::string name;         // "diver depth"
+  NumberUnit unit;          // of the values; metric
   bool down = false;        // larger is lower: depths
   double newest = 0.0;      // NaN: not known
   std::vector<float> kept;  // a ring of kNumbersKept, NaN where nothing is known
@@ -37,7 +51,7 @@ class RunNumbers {
   double age_s(std::size_t i) const { return looked_s_ - times_s_[(first_ + i) % kNumbersKept]; }
 
  private:
-  void add(const std::string& name, const char* unit, double value, bool down = false);
+  void add(const std::string& name, const NumberUnit& unit, double value, bool down = false);
   void add_vehicles(const PhysicsWorld& world, const PhysicsState& state);
   void add_divers(const PhysicsWorld& world, const sim::Snapshot<PhysicsState>& snapshot);
   std::vector<RunNumber> all_;

@@ -4,10 +4,12 @@
 
 #include <cmath>
 #include <fstream>
+#include <set>
 
 #include "testbed/instruments/instrument_data.hpp"
 #include "testbed/view/dive_panels.hpp"
 #include "testbed/view/gauge_panel.hpp"
+#include "testbed/view/graph_panel.hpp"
 #include "testbed/view/map_panel.hpp"
 #include "testbed/view/panel_frame.hpp"
 #include "testbed/view/picker.hpp"
@@ -91,6 +93,49 @@ TEST(Readout, OfADiverHasTheDepthAndTheHeadingOfTheInstruments) {
     EXPECT_NE(length_text(true_m, 1, units).substr(0, shown.depth.view().size()),
               shown.depth.view());
   }
+}
+
+TEST(Units, WhatAWindowSaysIsImperialWhereThatIsAskedFor) {
+  constexpr auto kFeet = hud::Units::kImperial, kMetres = hud::Units::kMetric;
+  EXPECT_EQ(force_text(44.482, kFeet), "10 lbf");
+  EXPECT_EQ(force_text(44.482, kMetres), "44 N");
+  EXPECT_EQ(flow_text(28.3168, kFeet), "1.00 cu ft/min");
+  EXPECT_EQ(flow_text(28.3168, kMetres), "28 l/min");
+  const sonar::Limits limits{.range_min_m = 0.3048, .range_max_m = 9.144};
+  EXPECT_EQ(range_words(limits, kFeet), "1 to 30 ft");
+  EXPECT_EQ(range_words(limits, kMetres), "0.305 to 9.14 m");
+  EXPECT_EQ(grid_words(7.62, kFeet), "grid 25 ft");
+  EXPECT_EQ(grid_words(5.0, kMetres), "grid 5 m");
+  EXPECT_EQ(picked_words("rov, vehicle", 3.048, kFeet), "rov, vehicle, 10.0 ft");
+  EXPECT_EQ(picked_words("rov, vehicle", 3.048, kMetres), "rov, vehicle, 3.05 m");
+  VehicleGauges gauges;
+  gauges.tether_n = 44.482, gauges.tether_used = 0.5;
+  EXPECT_EQ(tether_words(gauges, kFeet), "tether 10 lbf, 50 % of its length out");
+  EXPECT_EQ(tether_words(gauges, kMetres), "tether 44 N, 50 % of its length out");
+}
+
+// Each number of a run has a unit, and none that has an imperial one is shown in metres, bar,
+// litres or newton there.
+TEST(Units, OfEveryNumberInAGraphAreThoseThatAreAskedFor) {
+  TestDive dive = dive_of("[physics]\n" + rov_text("position_m = [0, -10, 0]\n") +
+                          diver_text(std::string("position_m = [4, -12, 0]\n") + kProne));
+  RunNumbers numbers;
+  numbers.look(*dive.world, dive.simulation->newest(), 20.0, 0.5);
+  const std::set<std::string> both{"min", "/min", "deg", "%", "ms"};
+  for (const RunNumber& one : numbers.all()) {
+    const bool oxygen = one.name.ends_with(" pO2");  // the HUD's too is in bar
+    EXPECT_TRUE(one.unit.metric != std::string(one.unit.imperial) ||
+                both.contains(one.unit.metric) || oxygen)
+        << one.name;
+  }
+  const RunNumber& depth = number(numbers, "diver depth");
+  EXPECT_EQ(caption(depth, depth.newest, depth.newest, hud::Units::kImperial),
+            fmt::format("diver depth   {:.4g} ft   ({:.3g} to {:.3g})", depth.newest / 0.3048,
+                        depth.newest / 0.3048, depth.newest / 0.3048));
+  const RunNumber& tank = number(numbers, "diver tank");
+  EXPECT_EQ(caption(tank, tank.newest, tank.newest, hud::Units::kMetric),
+            fmt::format("diver tank   {:.4g} bar   ({:.3g} to {:.3g})", tank.newest, tank.newest,
+                        tank.newest));
 }
 
 TEST(MapTrails, AreBoundedAndTheMapHoldsThemAll) {
