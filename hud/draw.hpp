@@ -13,6 +13,10 @@ void draw_corner(Painter& painter, const Shown& shown);
 void draw_console(Painter& painter, const Shown& shown);  // draw_console.cpp
 // The plates of the console, layout units; that of the alarms' band also while there is no alarm.
 std::vector<Box> console_plates(const Shown& shown);
+// Where a display lays the pictures of the sonar and of the camera over the console, layout units;
+// nothing where there is none.
+std::optional<Box> sonar_place(const Shown& shown);
+std::optional<Box> camera_place(const Shown& shown);
 void draw(LayoutKind layout, Painter& painter, const Shown& shown);
 
 // The jacket's buttons, as a diver sees which are pressed.

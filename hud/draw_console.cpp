@@ -13,7 +13,16 @@ constexpr double kTitle = 12.0, kLeft = 16.0, kWide = 300.0, kStreamRow = 26.0;
 constexpr Box kDiver{kLeft, 16.0, kWide, 688.0}, kCompass{490.0, 16.0, 300.0, 56.0};
 constexpr Box kAlarmBand{400.0, 80.0, 480.0, 60.0}, kCondition{332.0, 462.0, 616.0, 90.0};
 constexpr Box kHeart{332.0, 560.0, 304.0, 144.0}, kBreath{644.0, 560.0, 304.0, 144.0};
-constexpr Box kSonar{964.0, 404.0, kWide, 300.0};
+// The camera alone has the sonar's place.
+constexpr Box kSonar{964.0, 404.0, kWide, 300.0}, kCamera{964.0, 216.0, kWide, 180.0};
+
+const Box& camera_plate(const Shown& s) {
+  return s.sonar.empty() ? kSonar : kCamera;
+}
+
+Box picture_place(const Box& plate) {
+  return {plate.x + 8.0, plate.y + 32.0, plate.w - 16.0, plate.h - 40.0};
+}
 
 Box streams_plate(const Shown& s) {
   const double rows =
@@ -23,6 +32,17 @@ Box streams_plate(const Shown& s) {
 
 void title(Painter& p, double x, double y, std::string_view words) {
   p.text(x, y, kTitle, words, kLabel, Align::kLeft, Face::kBold);
+}
+
+// Until there is a picture its place says so.
+void draw_picture_plate(Painter& p, const Box& plate, std::string_view name) {
+  p.plate(plate, 14.0, kPlate);
+  const double room = plate.w - 24.0, wide = p.width(kTitle, name, Face::kBold);
+  p.text(plate.x + 12.0, plate.y + 22.0, kTitle * std::min(1.0, room / wide), name, kLabel,
+         Align::kLeft, Face::kBold);
+  const Box place = picture_place(plate);
+  p.text(place.x + 0.5 * place.w, place.y + 0.5 * place.h, 11.0, "waits for its picture", kLabel,
+         Align::kCenter);
 }
 
 void draw_jacket(Painter& p, const Box& box, const Shown& s) {
@@ -218,18 +238,25 @@ void draw_gaze(Painter& p, const Shown& s) {
 std::vector<Box> console_plates(const Shown& s) {
   std::vector<Box> out{kDiver, kCompass, kAlarmBand, kHeart, kBreath, streams_plate(s)};
   if (s.condition.known) out.push_back(kCondition);
-  if (s.has_sonar) out.push_back(kSonar);
+  if (!s.sonar.empty()) out.push_back(kSonar);
+  if (!s.camera.empty()) out.push_back(camera_plate(s));
   return out;
+}
+
+std::optional<Box> sonar_place(const Shown& s) {
+  return s.sonar.empty() ? std::nullopt : std::optional(picture_place(kSonar));
+}
+
+std::optional<Box> camera_place(const Shown& s) {
+  return s.camera.empty() ? std::nullopt : std::optional(picture_place(camera_plate(s)));
 }
 
 void draw_console(Painter& p, const Shown& s) {
   if (s.has_gaze) draw_gaze(p, s);
   draw_diver(p, s);
   draw_streams(p, s);
-  if (s.has_sonar) {
-    p.plate(kSonar, 14.0, kPlate);
-    title(p, 976.0, 426.0, "ROV SONAR");
-  }
+  if (!s.sonar.empty()) draw_picture_plate(p, kSonar, s.sonar.view());
+  if (!s.camera.empty()) draw_picture_plate(p, camera_plate(s), s.camera.view());
   p.plate(kCompass, 14.0, kPlate);
   p.compass({502.0, 22.0, 276.0, 46.0}, s, 14.0);
   if (any_alarm(s)) p.alarm_band(kAlarmBand, s, 20.0);

@@ -41,10 +41,6 @@ struct Layout {
 // 22 are best), and of at least 20 pixels a degree.
 inline constexpr double kLeastText_deg = 20.0 / 60.0, kLeastPixels_deg = 20.0;
 
-// Left, top, width, height in the console's pixels at a scale of 1: there a display lays the
-// vehicle's sonar over the console, as a picture of its own.
-inline constexpr double kConsoleSonar[4] = {972.0, 436.0, 284.0, 260.0};
-
 std::span<const Layout> layouts();
 const Layout& layout_of(LayoutKind kind);
 // Nothing where no layout has that name.

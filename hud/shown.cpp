@@ -139,8 +139,15 @@ void show_operator(const DiveData& d, Units units, const Minute& minute, const O
     out.gaze_x = static_cast<int>(std::lround(1e3 * about.gaze->x));
     out.gaze_y = static_cast<int>(std::lround(1e3 * about.gaze->y));
   }
-  out.has_sonar = about.has_sonar;
-  out.stream_count = std::min(about.streams.size(), kShownStreams);
+  out.sonar = about.sonar;
+  out.camera = about.camera;
+  // The line of those that are left out takes a row of the shorter list.
+  const bool both = !about.sonar.empty() && !about.camera.empty();
+  const std::size_t most = !both ? kShownStreams
+                           : about.streams.size() <= kStreamsBesidePictures
+                               ? kStreamsBesidePictures
+                               : kStreamsBesidePictures - 1;
+  out.stream_count = std::min(about.streams.size(), most);
   out.more_streams = about.streams.size() - out.stream_count;
   std::copy_n(about.streams.begin(), out.stream_count, out.streams.begin());
 }

@@ -26,12 +26,15 @@ struct OperatorData {
   // Where the diver looks: in the view, 0 to 1 from its left and its top.
   std::optional<Vec2> gaze;
   std::span<const StreamHealth> streams;
-  bool has_sonar = false;  // the vehicle's picture is laid over kConsoleSonar
+  // Names of the sonar and the camera whose pictures are laid over the console (draw.hpp); empty:
+  // the scene has none, and there is no place for it.
+  FixedText sonar, camera;
 };
 
 inline constexpr std::size_t kShownStreams = 12;
-inline constexpr std::uint8_t kNoStep = 255;  // of a bar whose number is not known
-inline constexpr int kBarSteps = 60;          // of tissues and jacket
+inline constexpr std::size_t kStreamsBesidePictures = 5;  // over both pictures
+inline constexpr std::uint8_t kNoStep = 255;              // of a bar whose number is not known
+inline constexpr int kBarSteps = 60;                      // of tissues and jacket
 inline constexpr double kAscentStep_m_min = 3.0;
 inline constexpr int kAscentSteps = 6;
 
@@ -69,7 +72,7 @@ struct Shown {
   int gaze_x = 0, gaze_y = 0;  // thousandths of the view
   std::array<StreamHealth, kShownStreams> streams{};
   std::size_t stream_count = 0, more_streams = 0;
-  bool has_sonar = false;
+  FixedText sonar, camera;
 
   bool operator==(const Shown&) const = default;
 };

@@ -49,5 +49,10 @@ void main() {
   }
   float part = inside > 0.0 && full_scale > 0.0 ? c.gain * sum / inside / full_scale : 0.0;
   vec3 rgb = copper(part > 0.0 ? pow(part, c.gamma) : 0.0);
-  imageStore(picture, ivec3(at, 0), vec4(rgb, inside / 4.0));
+  float alpha = inside / 4.0;
+  if (c.is_opaque != 0) {
+    rgb = mix(kStops[0], rgb, alpha);
+    alpha = 1.0;
+  }
+  imageStore(picture, ivec3(at, 0), vec4(rgb, alpha));
 }

@@ -22,6 +22,8 @@ struct SonarFanPush {
   float gamma;  // shown brightness = (value gain / full scale)^gamma
   float gain;
   uint is_power;  // cells are floats of power, shown as amplitudes; else counts
+  uint is_opaque;  // around the fan is the darkest colour; else nothing, and colour is not
+                   // multiplied by alpha
 };
 
 NERITIC_CONST uint kSonarFanSums = 0;

@@ -21,7 +21,7 @@ constexpr std::uint32_t groups(std::uint32_t pixels) {
 // grid: its limits are those shown, its bins those of the whole ping; part: the share of the
 // range's bins that the limits show.
 shared::SonarFanPush push_of(const FanShape& shape, const sonar::BeamGrid& grid, double part,
-                             bool is_power, double gain) {
+                             bool is_power, bool is_opaque, double gain) {
   const sonar::Limits& l = grid.limits;
   const double half = (l.azimuth_max_rad - l.azimuth_min_rad) / 2.0;
   return {.width = shape.width,
@@ -38,7 +38,8 @@ shared::SonarFanPush push_of(const FanShape& shape, const sonar::BeamGrid& grid,
           .bins_per_rad = static_cast<float>(1.0 / grid.azimuth_step_rad()),
           .gamma = kGamma,
           .gain = static_cast<float>(gain),
-          .is_power = is_power};
+          .is_power = is_power,
+          .is_opaque = is_opaque};
 }
 
 }  // namespace
@@ -73,8 +74,8 @@ FanShape fan_shape(const sonar::Limits& l, std::uint32_t longest_side_px) {
   return shape;
 }
 
-Result<std::unique_ptr<SonarFans>> SonarFans::create(gpu::Device& device) {
-  std::unique_ptr<SonarFans> fans(new SonarFans(device));
+Result<std::unique_ptr<SonarFans>> SonarFans::create(gpu::Device& device, bool opaque) {
+  std::unique_ptr<SonarFans> fans(new SonarFans(device, opaque));
   gpu::ComputePipelineDesc scale;
   scale.name = "sonar fan scale";
   scale.code = shaders::kSonarFanScaleComp;
@@ -243,8 +244,8 @@ void SonarFans::declare_picture(graph::FrameGraph& graph, Fan& fan, graph::Buffe
                 builder.read(scale, graph::Access::kStorageReadCompute);
                 data.picture = builder.write(picture, graph::Access::kStorageWriteCompute);
               },
-              [this, push = push_of(fan.shape, fan.grid, fan.range_part, fan.is_power, gain_)](
-                  const Data& data, graph::PassContext& context) {
+              [this, push = push_of(fan.shape, fan.grid, fan.range_part, fan.is_power, opaque_,
+                                    gain_)](const Data& data, graph::PassContext& context) {
                 gpu::Commands& commands = context.commands;
                 commands.bind_pipeline(draw_);
                 commands.bind(

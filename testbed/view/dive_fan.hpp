@@ -26,7 +26,8 @@ FanShape fan_shape(const sonar::Limits& limits, std::uint32_t longest_side_px);
 
 class SonarFans {
  public:
-  static Result<std::unique_ptr<SonarFans>> create(gpu::Device& device);
+  // opaque: around each fan is its darkest colour, for pictures that are copied; else it is clear.
+  static Result<std::unique_ptr<SonarFans>> create(gpu::Device& device, bool opaque = false);
   // Amplitudes times the gain, and the near part of the range alone: of the next ping, or of the
   // newest one at once (redraw).
   void show(double gain, double range_part);
@@ -55,7 +56,7 @@ class SonarFans {
     gpu::Buffer sums;          // of the newest ping, kept
     graph::ImageHandle drawn;  // in this frame's graph; empty where an earlier frame drew it
   };
-  explicit SonarFans(gpu::Device& device) : device_(device) {}
+  SonarFans(gpu::Device& device, bool opaque) : device_(device), opaque_(opaque) {}
   Status shape_fan(Fan& fan);
   Result<Fan*> fan_of(std::size_t sonar, const std::string& name, const sonar::BeamGrid& grid);
   graph::BufferHandle declare_scale(graph::FrameGraph& graph, const std::string& name,
@@ -65,6 +66,7 @@ class SonarFans {
   void declare_picture(graph::FrameGraph& graph, Fan& fan, graph::BufferHandle sums,
                        graph::BufferHandle scale);
   gpu::Device& device_;
+  bool opaque_;
   gpu::Pipeline scale_, draw_;
   double gain_ = 1.0, range_part_ = 1.0;
   std::map<std::size_t, std::unique_ptr<Fan>> fans_;

@@ -44,6 +44,68 @@ void record_upload(const ImageU8& picture, const gpu::Image& image, gpu::Command
                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
 }
 
+// The upload of an instrument's picture; every texel is written.
+graph::ImageHandle declare_upload(graph::FrameGraph& graph, const ImageU8& picture,
+                                  const gpu::Image& image) {
+  const graph::ImageHandle target = graph.import_image(image, {});
+  struct Data {
+    graph::ImageHandle image;
+  };
+  return graph
+      .add_pass<Data>(
+          image.desc().name,
+          [&](graph::PassBuilder& builder, Data& data) {
+            data.image = builder.write(target, graph::Access::kTransferWrite);
+          },
+          [&picture](const Data& data, graph::PassContext& context) {
+            record_upload(picture, context.image(data.image), context.commands);
+          })
+      .image;
+}
+
+// As large as a place lets, in its middle: pixels of the console's picture from its left and top.
+VkRect2D fit(const hud::Box& place, const ConsolePicture& picture, double scale) {
+  const double wide = std::min(place.w, place.h * picture.width / picture.height);
+  const double high = wide * picture.height / picture.width;
+  const auto px = [scale](double v) { return static_cast<std::int32_t>(std::lround(scale * v)); };
+  const std::int32_t left = px(place.x + 0.5 * (place.w - wide)),
+                     top = px(place.y + 0.5 * (place.h - high));
+  return {{left, top},
+          {static_cast<std::uint32_t>(std::max(1, px(wide))),
+           static_cast<std::uint32_t>(std::max(1, px(high)))}};
+}
+
+// A picture into a rectangle of another, scaled.
+graph::ImageHandle declare_copy(graph::FrameGraph& graph, const char* name,
+                                const ConsolePicture& from, const VkRect2D& rect,
+                                graph::ImageHandle onto) {
+  struct Data {
+    graph::ImageHandle from, onto;
+  };
+  return graph
+      .add_pass<Data>(
+          name,
+          [&](graph::PassBuilder& builder, Data& data) {
+            data.from = from.image;
+            builder.read(from.image, graph::Access::kTransferRead);
+            data.onto = builder.write(onto, graph::Access::kTransferWrite);
+          },
+          [from, rect](const Data& data, graph::PassContext& context) {
+            VkImageBlit region{};
+            region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+            region.srcOffsets[1] = {static_cast<std::int32_t>(from.width),
+                                    static_cast<std::int32_t>(from.height), 1};
+            region.dstOffsets[0] = {rect.offset.x, rect.offset.y, 0};
+            region.dstOffsets[1] = {rect.offset.x + static_cast<std::int32_t>(rect.extent.width),
+                                    rect.offset.y + static_cast<std::int32_t>(rect.extent.height),
+                                    1};
+            vkCmdBlitImage(context.commands.handle(), context.image(data.from).handle(),
+                           VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, context.image(data.onto).handle(),
+                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_LINEAR);
+          })
+      .onto;
+}
+
 // The source of a dive in this process.
 class PhysicsFeed final : public InstrumentFeed {
  public:
@@ -108,18 +170,14 @@ void DiveHud::cycle() {
   choice_ = (choice_ + 1) % (instruments_.size() + 2);
 }
 
-// Whether the picture may change: by new numbers, or as a danger flashes.
-bool DiveHud::due(double seen_s) {
-  const bool flash = hud::flash_at(seen_s);
+// Whether the picture that is seen then may change: by new numbers, or as a danger flashes.
+bool DiveHud::is_due(double seen_s) const {
   const bool flashes =
-      flash != flash_ &&
+      hud::flash_at(seen_s) != flash_ &&
       std::ranges::any_of(instruments_, [](const Instrument& i) { return i.hud.flashes(); });
   const double after_s = next_seen_s_ - seen_s;
   // Where the viewer's clock begins anew, it begins now.
-  if (!flashes && after_s > 1e-9 && after_s <= 1.0 / kHudRate_hz + 1e-9) return false;
-  flash_ = flash;
-  next_seen_s_ = seen_s + 1.0 / kHudRate_hz;
-  return true;
+  return flashes || after_s <= 1e-9 || after_s > 1.0 / kHudRate_hz + 1e-9;
 }
 
 // Whether the feed was read. anew: a picture is made of it.
@@ -130,14 +188,21 @@ bool DiveHud::look(const HudView& view, bool anew) {
   InstrumentNews news = feed_->read();
   data_ = news.data;
   streams_ = std::move(news.streams);
-  about_ = {.gaze = gaze_in(news.gaze, view), .streams = streams_};
+  about_ = {.gaze = gaze_in(news.gaze, view),
+            .streams = streams_,
+            .sonar = std::string_view(options_.sonar),
+            .camera = std::string_view(options_.camera)};
   next_s_ = data_.time_s + 1.0 / kHudRate_hz;
   return true;
 }
 
 Status DiveHud::declare(graph::FrameGraph& graph, const HudView& view,
                         std::vector<xr::Layer>& layers) {
-  const bool anew = due(view.seen_s);
+  const bool anew = is_due(view.seen_s);
+  if (anew) {
+    flash_ = hud::flash_at(view.seen_s);
+    next_seen_s_ = view.seen_s + 1.0 / kHudRate_hz;
+  }
   const bool heard = look(view, anew);
   const auto in_window = view.tracked ? std::vector<HudPlace>() : places(view.group);
   for (Instrument& instrument : instruments_) {
@@ -151,7 +216,7 @@ Status DiveHud::declare(graph::FrameGraph& graph, const HudView& view,
     const std::uint32_t height_px =
         view.tracked ? layout.height_px : static_cast<std::uint32_t>(rect.height);
     NERITIC_TRY(const graph::ImageHandle image,
-                declare_picture(graph, instrument, height_px, anew, view.seen_s));
+                declare_picture(graph, instrument, height_px, anew, view));
     layers.push_back(place(instrument, view, rect));
     std::get<xr::PanelLayer>(layers.back()).image = image;
   }
@@ -179,36 +244,40 @@ Status DiveHud::make_image(Instrument& instrument) {
 
 Result<graph::ImageHandle> DiveHud::declare_picture(graph::FrameGraph& graph,
                                                     Instrument& instrument, std::uint32_t height_px,
-                                                    bool anew, double seen_s) {
+                                                    bool anew, const HudView& view) {
   const bool resized = height_px != instrument.height_px;
   if (resized) {
     instrument.hud.resize(height_px);
     instrument.height_px = height_px;
     NERITIC_TRY_STATUS(make_image(instrument));
   }
-  const bool changed = (anew || resized) && instrument.hud.update(data_, seen_s, about_);
-  if (!anew && !resized) instrument.hud.observe(data_, seen_s);
-  if (!changed)
-    return graph.import_image(instrument.image,
-                              {.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
-  const graph::ImageHandle target = graph.import_image(instrument.image, {});
-  struct Data {
-    graph::ImageHandle image;
-  };
-  const graph::ImageHandle image =
-      graph
-          .add_pass<Data>(
-              instrument.image.desc().name,
-              [&](graph::PassBuilder& builder, Data& data) {
-                data.image = builder.write(target, graph::Access::kTransferWrite);
-              },
-              [&instrument](const Data& data, graph::PassContext& context) {
-                record_upload(instrument.hud.picture(), context.image(data.image),
-                              context.commands);
-              })
-          .image;
-  graph.output(image, graph::Access::kSampledFragment);
+  const bool changed = (anew || resized) && instrument.hud.update(data_, view.seen_s, about_);
+  if (!anew && !resized) instrument.hud.observe(data_, view.seen_s);
+  graph::ImageHandle image =
+      changed ? declare_upload(graph, instrument.hud.picture(), instrument.image)
+              : graph.import_image(instrument.image,
+                                   {.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+  const bool laid = anew && instrument.hud.layout().kind == hud::LayoutKind::kConsole &&
+                    lay_over(graph, instrument, view, image);
+  if (changed || laid) graph.output(image, graph::Access::kSampledFragment);
   return image;
+}
+
+// The sonar's and the camera's pictures in their places of the console; false: there are none.
+bool DiveHud::lay_over(graph::FrameGraph& graph, const Instrument& instrument, const HudView& view,
+                       graph::ImageHandle& image) const {
+  const hud::Shown& shown = instrument.hud.shown();
+  const double scale =
+      static_cast<double>(instrument.height_px) / instrument.hud.layout().height_px;
+  const auto lay = [&](const char* name, const std::optional<hud::Box>& place,
+                       const ConsolePicture& picture) {
+    if (!place || !picture.image) return false;
+    image = declare_copy(graph, name, picture, fit(*place, picture, scale), image);
+    return true;
+  };
+  const bool sonar = lay("hud sonar", hud::sonar_place(shown), view.sonar);
+  const bool camera = lay("hud camera", hud::camera_place(shown), view.camera);
+  return sonar || camera;
 }
 
 xr::PanelLayer DiveHud::place(const Instrument& instrument, const HudView& view,

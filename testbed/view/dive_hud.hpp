@@ -25,6 +25,14 @@ struct DiveHudOptions {
   std::vector<hud::LayoutKind> layouts;  // empty: none
   hud::Units units = hud::Units::kMetric;
   std::size_t diver = 0;  // number of the diver among the world's
+  // Names of the sonar and the camera that the console shows; empty: none.
+  std::string sonar, camera;
+};
+
+// A picture of this frame's graph that can be copied; empty: none.
+struct ConsolePicture {
+  graph::ImageHandle image;
+  std::uint32_t width = 0, height = 0;
 };
 
 // Where the panels are seen.
@@ -40,6 +48,7 @@ struct HudView {
   // When the picture is seen, on a clock that neither stops nor hurries with the scene's; where
   // nobody waits for the pictures, their own time. Alarms last and flash by it.
   double seen_s = 0.0;
+  ConsolePicture sonar, camera;  // the newest, where wants_pictures() said so
 };
 
 class DiveHud {
@@ -58,6 +67,11 @@ class DiveHud {
   // The pixels of a window that the instruments take from its panels.
   std::vector<PanelRect> taken(const xr::ViewGroup& group) const;
 
+  // Whether the console is shown; whether a picture of it that is seen then takes new ones of sonar
+  // and camera.
+  bool shows_console() const { return shown(hud::LayoutKind::kConsole); }
+  bool wants_pictures(double seen_s) const { return shows_console() && is_due(seen_s); }
+
   // The next choice: each layout alone, then none, then those of the options.
   void cycle();
 
@@ -68,9 +82,12 @@ class DiveHud {
     gpu::Image image;  // of the hud's picture, once it was uploaded
   };
   bool look(const HudView& view, bool anew);
-  bool due(double seen_s);
+  bool is_due(double seen_s) const;
+  bool lay_over(graph::FrameGraph& graph, const Instrument& instrument, const HudView& view,
+                graph::ImageHandle& image) const;
   Result<graph::ImageHandle> declare_picture(graph::FrameGraph& graph, Instrument& instrument,
-                                             std::uint32_t height_px, bool anew, double seen_s);
+                                             std::uint32_t height_px, bool anew,
+                                             const HudView& view);
   Status make_image(Instrument& instrument);
   // rect: of a window.
   xr::PanelLayer place(const Instrument& instrument, const HudView& view,

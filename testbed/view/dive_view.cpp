@@ -20,6 +20,54 @@ std::uint32_t scaled(std::uint32_t pixels, double scale) {
   return static_cast<std::uint32_t>(std::max(1.0, std::round(scale * pixels)));
 }
 
+bool is_on_vehicle(const scene::Scene& scene, const PhysicsWorld& world,
+                   const scene::Mount& mount) {
+  const int carrier = carrier_of(scene, mount);
+  return std::ranges::any_of(world.vehicles(), [&](const PhysicsVehicle& vehicle) {
+    return static_cast<int>(vehicle.object) == carrier;
+  });
+}
+
+// The first of the running sonars with a fan that a vehicle carries, else the first with a fan.
+std::optional<std::size_t> vehicle_sonar(const scene::Scene& scene, const PhysicsWorld& world,
+                                         const std::vector<std::size_t>& running) {
+  std::optional<std::size_t> out;
+  for (const std::size_t i : running) {
+    const scene::Sonar& sonar = scene.sonars[i];
+    if (sonar.kind != scene::SonarKind::kImaging && sonar.kind != scene::SonarKind::kProfiling)
+      continue;
+    if (is_on_vehicle(scene, world, sonar.mount)) return i;
+    if (!out) out = i;
+  }
+  return out;
+}
+
+// The first camera that a vehicle carries.
+std::optional<std::size_t> vehicle_camera(const scene::Scene& scene, const PhysicsWorld& world) {
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i)
+    if (is_on_vehicle(scene, world, scene.cameras[i].mount)) return i;
+  return std::nullopt;
+}
+
+// A camera's picture beside the views, no larger than it is shown.
+ViewsRequest beside_views(std::string name, const scene::Camera& camera,
+                          const scene::MotionSource& motion, double time_s) {
+  constexpr double kMostSide_px = 384.0;
+  const double scale = std::min(1.0, kMostSide_px / std::max(camera.width, camera.height));
+  ViewsRequest views{.name = std::move(name), .exposure = camera.exposure};
+  views.views.width = scaled(camera.width, scale);
+  views.views.height = scaled(camera.height, scale);
+  const Pose pose = motion.world_from(camera.mount, time_s);
+  views.views.views.push_back(
+      {.world_from_view = pose,
+       .tangents = tangents_from_fov(camera.vertical_fov_rad,
+                                     static_cast<double>(camera.width) / camera.height),
+       .near_m = camera.near_m,
+       .next_world_from_view = pose});
+  views.views.worn_object = worn_by(motion, camera.mount, pose.position_m, time_s);
+  return views;
+}
+
 }  // namespace
 
 DiveView::DiveView(Session& session, xr::Display& display, DivePilot pilot,
@@ -58,9 +106,16 @@ Result<std::unique_ptr<DiveView>> DiveView::create(Session& session, xr::Display
                                  .units = options.units,
                                  .task = options.task}));
   }
-  if (options.hud)
+  if (options.hud) {
+    const scene::Scene& scene = session.scene();
+    view->console_sonar_ = vehicle_sonar(scene, physics->world(), options.sonars);
+    view->console_camera_ = vehicle_camera(scene, physics->world());
+    DiveHudOptions hud = *options.hud;
+    if (view->console_sonar_) hud.sonar = scene.sonars[*view->console_sonar_].name;
+    if (view->console_camera_) hud.camera = scene.cameras[*view->console_camera_].name;
     view->hud_ = std::make_unique<DiveHud>(session.device(), session.frames(), *physics,
-                                           *options.hud, options.devices);
+                                           std::move(hud), options.devices);
+  }
   return view;
 }
 
@@ -288,6 +343,7 @@ void DiveView::add_views(FrameRequest& request) {
     request.views.push_back(std::move(views));
   }
   add_inset(request, motion);
+  add_console_camera(request, motion);
 }
 
 // The body whose eyes the views are: the wearer's, or in a window that which carries the camera in
@@ -299,29 +355,48 @@ std::uint32_t DiveView::worn_object(const scene::MotionSource& motion, double ti
                            : render::ViewSet::kWornByNobody;
 }
 
-// A camera's picture beside the views, no larger than a panel shows it.
-void DiveView::add_inset(FrameRequest& request, const scene::MotionSource& motion) const {
+// The inset of the panels, which a person asks for.
+void DiveView::add_inset(FrameRequest& request, const scene::MotionSource& motion) {
+  inset_view_.reset();
   const auto inset = console_ && shown() ? console_->inset() : std::nullopt;
   if (!inset) return;
-  constexpr double kMostSide_px = 384.0;
+  inset_view_ = request.views.size();
   const scene::Camera& camera = session_.scene().cameras[*inset];
-  const double scale = std::min(1.0, kMostSide_px / std::max(camera.width, camera.height));
-  ViewsRequest views{.name = "inset " + camera.name, .exposure = camera.exposure};
-  views.views.width = scaled(camera.width, scale);
-  views.views.height = scaled(camera.height, scale);
-  const Pose pose = motion.world_from(camera.mount, request.time_s);
-  views.views.views.push_back(
-      {.world_from_view = pose,
-       .tangents = tangents_from_fov(camera.vertical_fov_rad,
-                                     static_cast<double>(camera.width) / camera.height),
-       .near_m = camera.near_m,
-       .next_world_from_view = pose});
-  views.views.worn_object = worn_by(motion, camera.mount, pose.position_m, request.time_s);
-  request.views.push_back(std::move(views));
+  request.views.push_back(beside_views("inset " + camera.name, camera, motion, request.time_s));
+}
+
+// The vehicle's camera, for the pictures of the HUD's console that take a new one.
+void DiveView::add_console_camera(FrameRequest& request, const scene::MotionSource& motion) {
+  camera_view_.reset();
+  if (!hud_ || !console_camera_ || !shown() || !hud_->wants_pictures(seen_s(request.time_s)))
+    return;
+  camera_view_ = request.views.size();
+  const scene::Camera& camera = session_.scene().cameras[*console_camera_];
+  request.views.push_back(beside_views("hud " + camera.name, camera, motion, request.time_s));
+}
+
+// When the picture is seen: the display's time; where none paces the frames, the pictures' own.
+double DiveView::seen_s(double time_s) const {
+  return frame_.display_at_ns ? 1e-9 * static_cast<double>(*frame_.display_at_ns) : time_s;
+}
+
+// The fan of the HUD's console, of each ping while that is shown.
+Status DiveView::declare_console_sonar(graph::FrameGraph& graph, const SensorFrame& frame) {
+  if (!hud_ || !console_sonar_ || !hud_->shows_console()) return {};
+  if (!console_fans_) {
+    NERITIC_TRY(console_fans_, SonarFans::create(session_.device(), true));
+  }
+  console_fans_->begin_frame();
+  for (const SensorFrame::Sonar& ping : frame.sonars)
+    if (ping.index == *console_sonar_)
+      NERITIC_TRY_STATUS(
+          console_fans_->declare(graph, "hud " + session_.scene().sonars[ping.index].name, ping));
+  return {};
 }
 
 // Where nothing else reads a ping it still runs, as its sonar is wanted.
 Status DiveView::declare_sonars(graph::FrameGraph& graph, const SensorFrame& frame) {
+  NERITIC_TRY_STATUS(declare_console_sonar(graph, frame));
   if (console_) return console_->declare_sonars(graph, frame);
   for (const SensorFrame::Sonar& ping : frame.sonars)
     graph.output(ping.image, graph::Access::kStorageReadCompute);
@@ -337,7 +412,7 @@ Status DiveView::declare(graph::FrameGraph& graph, const SensorFrame& frame, dou
   graph::ImageHandle inset;
   for (const SensorFrame::Views& views : frame.views) {
     if (views.index >= frame_.groups.size()) {
-      inset = views.color;
+      if (views.index == inset_view_) inset = views.color;
       continue;
     }
     if (views.index == 0) NERITIC_TRY_STATUS(picker_.declare(graph, views));
@@ -346,18 +421,7 @@ Status DiveView::declare(graph::FrameGraph& graph, const SensorFrame& frame, dou
                                          .depth = views.depth,
                                          .near_m = views.near_m});
   }
-  if (hud_) {
-    const xr::ViewGroup& group = frame_.groups.front();
-    HudView seen{group, frame_.world_from_head.has_value(), world_from_stage_,
-                 world_from_head_ * group.views.front().head_from_view};
-    seen.stage_at_eyes = !session_.scene().world_from_lab;
-    seen.seen_s = frame_.display_at_ns ? 1e-9 * static_cast<double>(*frame_.display_at_ns) : time_s;
-    // On the drawn arm, which follows the tracked one.
-    if (frame_.tracked.hands[0] && wearer_ && wears_)
-      seen.world_from_wrist =
-          world_from_wrist(physics_->world().humans()[0], physics_->shown().humans()[0]);
-    NERITIC_TRY_STATUS(hud_->declare(graph, seen, layers));
-  }
+  if (hud_) NERITIC_TRY_STATUS(declare_hud(graph, frame, time_s, layers));
   if (console_) {
     auto taken = hud_ ? hud_->taken(frame_.groups.front()) : std::vector<PanelRect>();
     NERITIC_TRY(const auto panels, console_->declare(graph, {.group = frame_.groups.front(),
@@ -375,6 +439,25 @@ Status DiveView::declare(graph::FrameGraph& graph, const SensorFrame& frame, dou
   NERITIC_TRY_STATUS(screenshots_.declare(graph, shown, last));
   timeline_.current().declared = now_ns();
   return {};
+}
+
+Status DiveView::declare_hud(graph::FrameGraph& graph, const SensorFrame& frame, double time_s,
+                             std::vector<xr::Layer>& layers) {
+  const xr::ViewGroup& group = frame_.groups.front();
+  HudView seen{group, frame_.world_from_head.has_value(), world_from_stage_,
+               world_from_head_ * group.views.front().head_from_view};
+  seen.stage_at_eyes = !session_.scene().world_from_lab;
+  seen.seen_s = seen_s(time_s);
+  // On the drawn arm, which follows the tracked one.
+  if (frame_.tracked.hands[0] && wearer_ && wears_)
+    seen.world_from_wrist =
+        world_from_wrist(physics_->world().humans()[0], physics_->shown().humans()[0]);
+  for (const SensorFrame::Views& views : frame.views)
+    if (views.index == camera_view_) seen.camera = {views.color, views.width, views.height};
+  if (hud_->wants_pictures(seen.seen_s) && console_sonar_ && console_fans_)
+    if (const FanShape* const fan = console_fans_->shape(*console_sonar_))
+      seen.sonar = {console_fans_->picture(graph, *console_sonar_), fan->width, fan->height};
+  return hud_->declare(graph, seen, layers);
 }
 
 gpu::Frames::SubmitSync DiveView::sync() const {

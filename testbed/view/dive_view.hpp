@@ -99,7 +99,12 @@ class DiveView final : public FrameView {
   void take_click();
   void switch_lamps();
   std::uint32_t worn_object(const scene::MotionSource& motion, double time_s) const;
-  void add_inset(FrameRequest& request, const scene::MotionSource& motion) const;
+  void add_inset(FrameRequest& request, const scene::MotionSource& motion);
+  void add_console_camera(FrameRequest& request, const scene::MotionSource& motion);
+  double seen_s(double time_s) const;
+  Status declare_console_sonar(graph::FrameGraph& graph, const SensorFrame& frame);
+  Status declare_hud(graph::FrameGraph& graph, const SensorFrame& frame, double time_s,
+                     std::vector<xr::Layer>& layers);
   void keep_run(const DiveInput& input);
   bool steers() const;
   void tell(const std::string& note);
@@ -124,6 +129,11 @@ class DiveView final : public FrameView {
   std::optional<RunKeeper> keeper_;
   std::unique_ptr<Console> console_;  // with an overlay
   std::unique_ptr<DiveHud> hud_;
+  // What the HUD's console shows: indices into the scene's; absent: it has none.
+  std::optional<std::size_t> console_sonar_, console_camera_;
+  std::unique_ptr<SonarFans> console_fans_;  // while the console was shown
+  // Of the request's view sets: the console's inset, the HUD's camera; absent: not in this frame.
+  std::optional<std::size_t> inset_view_, camera_view_;
   std::optional<QualityGovernor> governor_;
   double lamp_share_ = 1.0;  // of those that the key switches
   Screenshots screenshots_;

@@ -46,7 +46,8 @@ const std::vector<StreamHealth>& streams() {
 }
 
 OperatorData about() {
-  return {.gaze = Vec2(0.47, 0.42), .streams = streams(), .has_sonar = true};
+  return {
+      .gaze = Vec2(0.47, 0.42), .streams = streams(), .sonar = "rov sonar", .camera = "rov camera"};
 }
 
 Hud hud_of(LayoutKind kind, const DiveData& data, double scale = 1.0,
@@ -277,6 +278,32 @@ TEST(HudLayout, NoTextOfTheConsoleTouchesItsPlatesFrame) {
               << dive.name << ": \"" << mark.text.view() << "\" at " << a.x << ", " << a.y;
         }
     }
+}
+
+// Neither picture has a place where the scene has no such sensor; beside both the streams leave
+// room, and say how many are left out.
+TEST(HudLayout, ThePicturesPlacesAreThereWhereTheSceneHasThem) {
+  std::vector<StreamHealth> many(9, streams()[0]);
+  for (const bool sonar : {false, true})
+    for (const bool camera : {false, true})
+      for (std::size_t count = 0; count <= many.size(); ++count) {
+        OperatorData about{.streams = std::span(many).first(count)};
+        if (sonar) about.sonar = "sonar";
+        if (camera) about.camera = "camera";
+        Hud hud(LayoutKind::kConsole, Units::kMetric, 720);
+        hud.update(calm_dive(), 0.0, about);
+        const Shown& s = hud.shown();
+        EXPECT_EQ(sonar_place(s).has_value(), sonar);
+        EXPECT_EQ(camera_place(s).has_value(), camera);
+        EXPECT_EQ(s.stream_count + s.more_streams, count);
+        const auto plates = console_plates(s);
+        for (std::size_t i = 0; i < plates.size(); ++i)
+          for (std::size_t j = 0; j < i; ++j) {
+            const Box &a = plates[i], &b = plates[j];
+            EXPECT_FALSE(a.x < b.right() && b.x < a.right() && a.y < b.bottom() && b.y < a.bottom())
+                << sonar << camera << count << ": " << i << " and " << j;
+          }
+      }
 }
 
 // The console's graphs have the unit at both ends of their axes, metric and imperial.

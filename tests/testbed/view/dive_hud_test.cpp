@@ -230,6 +230,73 @@ TEST_F(DiveHudTest, TheKeyShowsEachAloneThenNoneThenTheChosenOnes) {
   }
 }
 
+// One colour of the size of a sensor's picture, as an image that a pass may read.
+gpu::Image flat_picture(gpu::Device& device, std::uint32_t width, std::uint32_t height,
+                        std::array<std::uint8_t, 4> color) {
+  gpu::Image image = gpu::Image::create(device, {.name = "flat",
+                                                 .format = VK_FORMAT_R8G8B8A8_UNORM,
+                                                 .width = width,
+                                                 .height = height,
+                                                 .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                                                          VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                                                          VK_IMAGE_USAGE_SAMPLED_BIT,
+                                                 .array_view = true})
+                         .value();
+  std::vector<std::uint8_t> texels;
+  for (std::uint32_t i = 0; i < width * height; ++i)
+    texels.insert(texels.end(), color.begin(), color.end());
+  EXPECT_TRUE(gpu::upload_image(device, image, std::as_bytes(std::span(texels))).ok());
+  return image;
+}
+
+// The pictures of sonar and camera fill the middles of their places, in their own shapes, and stay
+// there until the next ones; a console without such sensors has no place and copies nothing.
+TEST_F(DiveHudTest, TheConsoleShowsTheSonarsAndTheCamerasPictures) {
+  const gpu::Image sonar = flat_picture(device(), 100, 80, {200, 40, 10, 255}),
+                   camera = flat_picture(device(), 160, 90, {10, 40, 200, 255});
+  for (const bool has : {true, false}) {
+    DiveHud hud(device(), *frames_, *physics_,
+                {.layouts = {hud::LayoutKind::kConsole},
+                 .sonar = has ? "rov sonar" : "",
+                 .camera = has ? "rov camera" : ""});
+    std::vector<std::string> names;
+    for (const double seen_s : {0.0, 0.05, 0.1}) {
+      graph::FrameGraph graph;
+      std::vector<xr::Layer> layers;
+      HudView view{group_, false, {}, {}};
+      view.seen_s = seen_s;
+      EXPECT_EQ(hud.wants_pictures(seen_s), seen_s == 0.0);
+      if (hud.wants_pictures(seen_s)) {
+        constexpr graph::ImportState kThere{.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+        view.sonar = {graph.import_image(sonar, kThere), 100, 80};
+        view.camera = {graph.import_image(camera, kThere), 160, 90};
+      }
+      NERITIC_ASSERT_STATUS(hud.declare(graph, view, layers));
+      ASSERT_TRUE(display_->declare(graph, {}, layers).ok());
+      gpu::Commands* commands = frames_->begin().value();
+      ASSERT_TRUE(executor_->run(graph, *commands).ok());
+      ASSERT_TRUE(frames_->wait(frames_->submit().value()).ok());
+      for (const graph::PassDecl& pass : graph.declaration().passes) names.push_back(pass.name);
+    }
+    EXPECT_EQ(std::ranges::count(names, "hud sonar"), has);
+    EXPECT_EQ(std::ranges::count(names, "hud camera"), has);
+    const auto pixels = shown();
+    std::size_t reds = 0, blues = 0;
+    for (std::size_t i = 0; i < pixels.size(); i += 4) {
+      const auto is = [&](int red, int green, int blue) {
+        return std::abs(static_cast<int>(pixels[i]) - red) <= 2 &&
+               std::abs(static_cast<int>(pixels[i + 1]) - green) <= 2 &&
+               std::abs(static_cast<int>(pixels[i + 2]) - blue) <= 2;
+      };
+      reds += is(200, 40, 10);
+      blues += is(10, 40, 200);
+    }
+    // The console at half its size: the sonar's place is 142 by 130, the camera's 142 by 70.
+    EXPECT_NEAR(static_cast<double>(reds), has ? 142.0 * 142.0 * 0.8 : 0.0, 300.0);
+    EXPECT_NEAR(static_cast<double>(blues), has ? 70.0 * 70.0 / 0.5625 : 0.0, 300.0);
+  }
+}
+
 TEST_F(DiveHudTest, AHeadsetLocksEachToItsFrame) {
   DiveHud hud(
       device(), *frames_, *physics_,

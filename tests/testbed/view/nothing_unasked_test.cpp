@@ -107,5 +107,14 @@ TEST_F(NothingUnasked, NeitherPassesNorMemoryNorThreadsOfWhatASceneIsNotShownWit
   EXPECT_NE(with_panels.find("overlay"), std::string::npos) << with_panels;
 }
 
+// The console of a scene without a vehicle draws no picture of a sensor for it.
+TEST_F(NothingUnasked, TheInstrumentsConsoleOfASceneWithoutAVehicleDrawsNoSensorForItself) {
+  const DiveHudOptions hud{.layouts = {hud::LayoutKind::kConsole}};
+  const std::string names = show({.hud = hud}, nullptr, [] {});
+  EXPECT_NE(names.find("hud console"), std::string::npos) << names;
+  for (const char* word : {"hud camera", "hud sonar", "fan"})
+    EXPECT_EQ(names.find(word), std::string::npos) << word << " in\n" << names;
+}
+
 }  // namespace
 }  // namespace neritic::testbed
