@@ -192,6 +192,41 @@ TEST(FindOpenxrRuntime, AsksTheVariableThenTheUserThenTheSystem) {
   EXPECT_EQ(find_openxr_runtime(), fs::path("/not/there.json"));
 }
 
+TEST(TroubleOfManifest, IsSaidOfEachFileThatNamesNoRuntime) {
+  const test::ScratchFolder scratch;
+  const auto trouble = [&](const char* text) {
+    const fs::path manifest = scratch / "runtime.json";
+    EXPECT_TRUE(write_text(manifest, text).ok());
+    return trouble_of_manifest(manifest);
+  };
+  const auto library = [](const std::string& path) {
+    return R"({"file_format_version": "1.0.0", "runtime": {"library_path": ")" + path + "\"}}";
+  };
+  ASSERT_TRUE(write_text(scratch / "here.so", "").ok());
+  EXPECT_EQ(trouble("{garbage"), "is no JSON");
+  EXPECT_THAT(trouble("[]"), HasSubstr("is no manifest"));
+  EXPECT_THAT(trouble("{}"), HasSubstr("is no manifest"));
+  EXPECT_THAT(trouble(R"({"file_format_version": "1.0.0", "runtime": {"library_path": 3}})"),
+              HasSubstr("is no manifest"));
+  EXPECT_THAT(trouble(library("./gone.so").c_str()), HasSubstr("gone.so is not there"));
+  EXPECT_EQ(trouble(library("./here.so").c_str()), "");
+  EXPECT_EQ(trouble(library((scratch / "here.so").string()).c_str()), "");
+  EXPECT_EQ(trouble(library("libopenxr_monado.so").c_str()), "");  // the system finds it
+}
+
+// A file that is there, but is no runtime, is no OpenXR runtime.
+TEST(DoctorText, ARuntimeThatDoesNotAnswerIsNotToldAsOne) {
+  Machine machine = complete_machine();
+  machine.openxr_runtime = "/etc/xdg/openxr/1/active_runtime.json";
+  machine.openxr_manifest_exists = true;
+  machine.headset_trouble = "the OpenXR runtime does not start";
+  EXPECT_THAT(doctor_text(machine), HasSubstr("active_runtime.json (does not answer)"));
+  EXPECT_THAT(doctor_json(machine), HasSubstr("the OpenXR runtime does not start"));
+  machine.openxr_manifest_trouble = "is no JSON";
+  EXPECT_THAT(doctor_text(machine), HasSubstr("active_runtime.json (is no JSON)"));
+  EXPECT_EQ(why(machine, "dive (headset)"), "/etc/xdg/openxr/1/active_runtime.json: is no JSON");
+}
+
 TEST(ExamineMachine, FindsAtLeastAProcessorAndMemory) {
   const Machine machine = examine_machine("");
   EXPECT_GT(machine.cpu_threads, 0u);

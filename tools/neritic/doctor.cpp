@@ -46,6 +46,8 @@ Verdict headset_verdict(const Machine& machine) {
     verdict.why = "no OpenXR runtime is configured (docs/headsets.md)";
   else if (!machine.openxr_manifest_exists && !machine.headset)
     verdict.why = machine.openxr_runtime.string() + " (XR_RUNTIME_JSON) is not there";
+  else if (!machine.headset && !machine.openxr_manifest_trouble.empty())
+    verdict.why = machine.openxr_runtime.string() + ": " + machine.openxr_manifest_trouble;
   else if (!machine.headset)
     verdict.why = machine.headset_trouble;
   else if (machine.headset->system.empty())
@@ -159,7 +161,10 @@ std::string doctor_text(const Machine& machine) {
   text += fmt::format(
       "OpenXR runtime      {}{}\n",
       machine.openxr_runtime.empty() ? "none configured" : machine.openxr_runtime.string(),
-      machine.openxr_runtime.empty() || machine.openxr_manifest_exists ? "" : " (no such file)");
+      machine.headset || machine.openxr_runtime.empty() ? ""
+      : !machine.openxr_manifest_exists                 ? " (no such file)"
+      : machine.openxr_manifest_trouble.empty()         ? " (does not answer)"
+                                                : " (" + machine.openxr_manifest_trouble + ")");
   if (machine.headset) text += headset_text(*machine.headset);
   text += fmt::format(
       "Pipeline cache      {}{}\n",
@@ -191,7 +196,12 @@ std::string doctor_json(const Machine& machine) {
   if (!machine.matplotlib.empty()) json["matplotlib"] = machine.matplotlib;
   json["display"] = {{"name", machine.display}, {"there", machine.display_there}};
   json["openxr"] = {{"runtime", machine.openxr_runtime.string()},
-                    {"exists", machine.openxr_manifest_exists}};
+                    {"exists", machine.openxr_manifest_exists},
+                    {"trouble", nullptr}};
+  if (!machine.headset && !machine.openxr_runtime.empty())
+    json["openxr"]["trouble"] = machine.openxr_manifest_trouble.empty()
+                                    ? machine.headset_trouble
+                                    : machine.openxr_manifest_trouble;
   if (machine.headset) json["openxr"]["answer"] = headset_json(*machine.headset);
   json["cache"] = {{"folder", machine.cache_folder.string()}, {"writable", machine.cache_writable}};
   json["cpu_threads"] = machine.cpu_threads;

@@ -28,6 +28,7 @@ struct Machine {
   bool display_there = false;            // its socket is there (true for an X11 display elsewhere)
   std::filesystem::path openxr_runtime;  // the active runtime's manifest; empty: none configured
   bool openxr_manifest_exists = false;
+  std::string openxr_manifest_trouble;     // why it names no runtime; empty: it names one
   std::optional<xr::HeadsetInfo> headset;  // what the runtime says
   std::string headset_trouble;             // or why it says nothing
   std::filesystem::path cache_folder;
@@ -45,6 +46,8 @@ Machine examine_machine(const std::string& wanted_device);
 // system's configuration folders. Empty where there is none; a path that XR_RUNTIME_JSON names is
 // returned whether it exists or not.
 std::filesystem::path find_openxr_runtime();
+// Why such a file is no manifest of a runtime whose library is there, in some words; empty: it is.
+std::string trouble_of_manifest(const std::filesystem::path& manifest);
 
 struct Verdict {
   std::string command;

@@ -9,6 +9,7 @@
 
 #include "engine/core/clock.hpp"
 #include "engine/core/files.hpp"
+#include "engine/core/json.hpp"
 #include "engine/core/memory.hpp"
 #include "engine/gpu/device_select.hpp"
 #include "engine/gpu/frames.hpp"
@@ -116,6 +117,24 @@ fs::path find_openxr_runtime() {
   return {};
 }
 
+// The format is the loader's ("Runtime Manifest File Format"): a library by its path, relative to
+// the manifest's folder, or by a bare name, which the system's search path has.
+std::string trouble_of_manifest(const fs::path& manifest) {
+  const auto text = read_text(manifest);
+  if (!text.ok()) return text.error().message;
+  const auto json = parse_json(*text);
+  if (!json.ok()) return "is no JSON";
+  const auto library = nlohmann::json::json_pointer("/runtime/library_path");
+  if (!json->is_object() || !json->contains("file_format_version") || !json->contains(library) ||
+      !json->at(library).is_string())
+    return "is no manifest of an OpenXR runtime: it needs file_format_version and "
+           "runtime.library_path";
+  const fs::path path = json->at(library).get<std::string>();
+  if (!path.has_parent_path()) return "";
+  const fs::path whole = path.is_absolute() ? path : manifest.parent_path() / path;
+  return is_file(whole) ? "" : "its library " + whole.string() + " is not there";
+}
+
 Machine examine_machine(const std::string& wanted_device) {
   Machine machine;
   if (const Status status = examine_vulkan(wanted_device, machine); !status.ok())
@@ -125,6 +144,8 @@ Machine examine_machine(const std::string& wanted_device) {
   examine_display(machine);
   machine.openxr_runtime = find_openxr_runtime();
   machine.openxr_manifest_exists = is_file(machine.openxr_runtime);
+  if (machine.openxr_manifest_exists)
+    machine.openxr_manifest_trouble = trouble_of_manifest(machine.openxr_runtime);
   if (auto headset = xr::examine_headset(); headset.ok())
     machine.headset = std::move(headset).value();
   else
