@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "engine/core/refusal.hpp"
@@ -20,6 +21,58 @@ struct Head {
   std::uint64_t length = 0;
 };
 
+Head head_of(std::span<const std::byte> bytes) {
+  McapCursor cursor(bytes.first(kRecordHead_bytes));
+  const auto op = static_cast<McapOp>(cursor.number<std::uint8_t>());
+  return {op, cursor.number<std::uint64_t>()};
+}
+
+// A chunk's record.
+struct Chunk {
+  std::uint64_t size = 0;  // unpacked
+  std::uint32_t crc = 0;   // 0: it has none
+  std::string compression;
+  std::span<const std::byte> packed;
+};
+
+// Nothing: the record is no whole chunk.
+std::optional<Chunk> chunk_of(std::span<const std::byte> content) {
+  McapCursor cursor(content);
+  cursor.take(16);  // times
+  Chunk chunk;
+  chunk.size = cursor.number<std::uint64_t>();
+  chunk.crc = cursor.number<std::uint32_t>();
+  chunk.compression = cursor.text();
+  chunk.packed = cursor.take(cursor.number<std::uint64_t>());
+  return cursor.whole() && cursor.left() == 0 ? std::optional(chunk) : std::nullopt;
+}
+
+// What is wrong; empty: nothing, and its records are in `out`.
+std::string unpack(const Chunk& chunk, std::vector<std::byte>& out) {
+  if (chunk.size > kMostChunk_bytes)
+    return fmt::format("a chunk of {} bytes; accepted: up to {}", chunk.size, kMostChunk_bytes);
+  if (chunk.compression.empty()) {
+    if (chunk.packed.size() != chunk.size) return "a chunk with another size than it says";
+    out.assign(chunk.packed.begin(), chunk.packed.end());
+  } else if (chunk.compression == "zstd") {
+    constexpr const char* kWrong = "a chunk that zstd cannot unpack";
+    // Ours say their size; then nothing is reserved that is not there.
+    const auto inside = ZSTD_getFrameContentSize(chunk.packed.data(), chunk.packed.size());
+    if (inside == ZSTD_CONTENTSIZE_ERROR ||
+        (inside != ZSTD_CONTENTSIZE_UNKNOWN && inside != chunk.size))
+      return kWrong;
+    out.resize(static_cast<std::size_t>(chunk.size));
+    const std::size_t got =
+        ZSTD_decompress(out.data(), out.size(), chunk.packed.data(), chunk.packed.size());
+    if (ZSTD_isError(got) || got != chunk.size) return kWrong;
+  } else {
+    return fmt::format("a chunk with the compression '{}'; accepted: zstd or none",
+                       printable(chunk.compression));
+  }
+  if (chunk.crc != 0 && crc_of(out) != chunk.crc) return "a chunk whose CRC differs";
+  return "";
+}
+
 class Reading {
  public:
   Reading(McapSource& source, const std::string& name, McapVisitor& visitor, AfterDamage after)
@@ -32,6 +85,12 @@ class Reading {
   enum class Next { kGoOn, kEnd };
 
   Result<Next> record();
+  bool sound(Head head, std::uint64_t at) const;
+  Result<bool> sound_at(std::uint64_t at);
+  Result<bool> is_chunk(std::uint64_t at);
+  Result<std::optional<std::uint64_t>> next_chunk(std::uint64_t from);
+  Result<Next> past(Head head, std::uint64_t from);
+  Status content(Head head, std::uint64_t at);
   Status chunk(std::span<const std::byte> content, std::uint64_t at);
   Status chunk_records(std::span<const std::byte> records, std::uint64_t at);
   Status schema(McapCursor cursor, std::uint64_t at);
@@ -51,8 +110,6 @@ class Reading {
       report_.damage.push_back(fmt::format("at byte {}: {}", at, what));
   }
   bool stopped() const { return report_.damages > 0 && after_ == AfterDamage::kStop; }
-  void unpack(std::string_view compression, std::span<const std::byte> packed, std::uint64_t size,
-              std::uint64_t at);
 
   McapSource& source_;
   const std::string& name_;
@@ -61,12 +118,10 @@ class Reading {
   McapReport report_;
   std::uint64_t at_ = 0;
   std::vector<std::byte> content_, unpacked_;
-  bool unpacked_whole_ = false;
   std::set<std::uint16_t> schemas_, channels_;
   // From the summary, for channels whose records in the data section are damaged.
   std::map<std::uint16_t, McapSchema> summary_schemas_;
   std::map<std::uint16_t, McapChannel> summary_channels_;
-  std::set<std::uint64_t> summary_chunks_;  // where they begin
   bool summary_read_ = false;
   std::uint64_t unknown_ = 0, unknown_at_ = 0;  // messages of channels that are nowhere
   std::set<std::uint16_t> unknown_channels_;
@@ -84,7 +139,7 @@ McapChannel channel_of(McapCursor& cursor) {
   return channel;
 }
 
-// The schemas and channels of a summary whose CRC is right, and where the chunks are.
+// The schemas and channels of a summary whose CRC is right.
 void Reading::read_summary() {
   if (std::exchange(summary_read_, true)) return;
   constexpr std::size_t kFooter = kRecordHead_bytes + 20;
@@ -108,10 +163,6 @@ void Reading::read_summary() {
     const auto kind = static_cast<McapOp>(cursor.number<std::uint8_t>());
     McapCursor content(cursor.take(cursor.number<std::uint64_t>()));
     if (!cursor.whole()) return;
-    if (kind == McapOp::kChunkIndex) {
-      content.take(16);
-      summary_chunks_.insert(content.number<std::uint64_t>());
-    }
     if (kind != McapOp::kSchema && kind != McapOp::kChannel) continue;
     const auto id = content.number<std::uint16_t>();
     if (kind == McapOp::kSchema) {
@@ -203,47 +254,13 @@ void Reading::tell_unknown() {
   unknown_ = 0;
 }
 
-// Into unpacked_; says what is wrong else.
-void Reading::unpack(std::string_view compression, std::span<const std::byte> packed,
-                     std::uint64_t size, std::uint64_t at) {
-  unpacked_whole_ = false;
-  if (size > kMostChunk_bytes)
-    return damaged(at,
-                   fmt::format("a chunk of {} bytes; accepted: up to {}", size, kMostChunk_bytes));
-  if (compression.empty()) {
-    if (packed.size() != size) return damaged(at, "a chunk with another size than it says");
-    unpacked_.assign(packed.begin(), packed.end());
-  } else if (compression == "zstd") {
-    // Ours say their size; then nothing is reserved that is not there.
-    const unsigned long long inside = ZSTD_getFrameContentSize(packed.data(), packed.size());
-    if (inside == ZSTD_CONTENTSIZE_ERROR || (inside != ZSTD_CONTENTSIZE_UNKNOWN && inside != size))
-      return damaged(at, "a chunk that zstd cannot unpack");
-    unpacked_.resize(static_cast<std::size_t>(size));
-    const std::size_t got =
-        ZSTD_decompress(unpacked_.data(), unpacked_.size(), packed.data(), packed.size());
-    if (ZSTD_isError(got) || got != size) return damaged(at, "a chunk that zstd cannot unpack");
-  } else {
-    return damaged(at, fmt::format("a chunk with the compression '{}'; accepted: zstd or none",
-                                   printable(compression)));
-  }
-  unpacked_whole_ = true;
-}
-
 Status Reading::chunk(std::span<const std::byte> content, std::uint64_t at) {
-  McapCursor cursor(content);
-  cursor.take(16);  // times
-  const auto size = cursor.number<std::uint64_t>();
-  const auto crc = cursor.number<std::uint32_t>();
-  const std::string compression = cursor.text();
-  const auto packed = cursor.take(cursor.number<std::uint64_t>());
-  if (!cursor.whole() || cursor.left() > 0)
-    return damaged(at, "a chunk with another size than it says"), Status();
-  unpack(compression, packed, size, at);
-  if (!unpacked_whole_) return {};
-  if (crc != 0 && crc_of(unpacked_) != crc)
-    return damaged(at, "a chunk whose CRC differs"), Status();
+  const auto chunk = chunk_of(content);
+  if (!chunk) return damaged(at, "a chunk with another size than it says"), Status();
+  if (const std::string wrong = unpack(*chunk, unpacked_); !wrong.empty())
+    return damaged(at, wrong), Status();
   ++report_.chunks;
-  report_.unpacked_bytes += size;
+  report_.unpacked_bytes += chunk->size;
   chunks_.emplace(at, kRecordHead_bytes + content.size());
   return chunk_records(unpacked_, at);
 }
@@ -315,28 +332,112 @@ void Reading::footer(std::span<const std::byte> content, std::uint64_t at) {
   if (!ended_) damaged(at_, "other bytes than the end of a file");
 }
 
+// Whether such a record may stand there.
+bool Reading::sound(Head head, std::uint64_t at) const {
+  if (head.length > source_.size() - at - kRecordHead_bytes) return false;
+  switch (head.op) {
+    case McapOp::kHeader:
+      return at == kMcapMagic.size();
+    case McapOp::kDataEnd:
+      return head.length == 4;
+    case McapOp::kFooter:
+      return head.length == 20 &&
+             at + kRecordHead_bytes + head.length + kMcapMagic.size() >= source_.size();
+    case McapOp::kSchema:
+    case McapOp::kChannel:
+    case McapOp::kMessage:
+    case McapOp::kChunk:
+    case McapOp::kMessageIndex:
+    case McapOp::kAttachment:
+    case McapOp::kMetadata:
+      return true;
+    case McapOp::kChunkIndex:
+    case McapOp::kAttachmentIndex:
+    case McapOp::kStatistics:
+    case McapOp::kMetadataIndex:
+    case McapOp::kSummaryOffset:
+      return in_summary_;
+  }
+  return static_cast<std::uint8_t>(head.op) >= 0x80;  // others' own
+}
+
+Result<bool> Reading::sound_at(std::uint64_t at) {
+  if (at + kRecordHead_bytes > source_.size()) return true;  // the end, or cut off
+  std::byte bytes[kRecordHead_bytes];
+  NERITIC_TRY_STATUS(source_.read(at, bytes));
+  return sound(head_of(bytes), at);
+}
+
+// A whole chunk, with the CRC that it says.
+Result<bool> Reading::is_chunk(std::uint64_t at) {
+  std::byte bytes[kRecordHead_bytes];
+  NERITIC_TRY_STATUS(source_.read(at, bytes));
+  const Head head = head_of(bytes);
+  if (head.length > kMostRecord_bytes || head.length > source_.size() - at - kRecordHead_bytes)
+    return false;
+  std::vector<std::byte> content(static_cast<std::size_t>(head.length)), unpacked;
+  NERITIC_TRY_STATUS(source_.read(at + kRecordHead_bytes, content));
+  const auto chunk = chunk_of(content);
+  return chunk && (chunk->crc != 0 || !chunk->compression.empty()) &&
+         unpack(*chunk, unpacked).empty();
+}
+
+// Where the next whole chunk begins, by looking at every byte from there on.
+Result<std::optional<std::uint64_t>> Reading::next_chunk(std::uint64_t from) {
+  // A chunk's head to the length of the name of its compression, which has up to four letters.
+  constexpr std::size_t kName = kRecordHead_bytes + 28, kLeast = kName + 4 + 8;
+  constexpr std::size_t kBlock = std::size_t{1} << 20;
+  std::vector<std::byte> block;
+  while (from + kLeast <= source_.size()) {
+    block.resize(
+        static_cast<std::size_t>(std::min<std::uint64_t>(kBlock + kLeast, source_.size() - from)));
+    NERITIC_TRY_STATUS(source_.read(from, block));
+    for (std::size_t i = 0; i + kLeast <= block.size(); ++i) {
+      if (block[i] != static_cast<std::byte>(McapOp::kChunk)) continue;
+      const std::uint64_t length = head_of(std::span(block).subspan(i)).length;
+      if (length > source_.size() - from - i - kRecordHead_bytes) continue;
+      McapCursor name(std::span<const std::byte>(block).subspan(i + kName));
+      if (name.number<std::uint32_t>() > 4) continue;
+      NERITIC_TRY(const bool whole, is_chunk(from + i));
+      if (whole) return std::optional(from + i);
+    }
+    from += block.size() - kLeast + 1;
+  }
+  return std::optional<std::uint64_t>();
+}
+
+// Over a record that cannot be one: to where it says that it ends, if a sound one follows there,
+// else to the next chunk.
+Result<Reading::Next> Reading::past(Head head, std::uint64_t from) {
+  const std::uint64_t behind = from + kRecordHead_bytes;
+  const bool fits = head.length <= source_.size() - behind;
+  if (fits && static_cast<std::uint8_t>(head.op) != 0) {
+    NERITIC_TRY(const bool goes_on, sound_at(behind + head.length));
+    if (goes_on) {
+      damaged(from, "a record of a kind that cannot stand there");
+      at_ = behind + head.length;
+      return stopped() ? Next::kEnd : Next::kGoOn;
+    }
+  }
+  NERITIC_TRY(const auto next, next_chunk(from + 1));
+  if (next) {
+    damaged(from, "a record that does not end before the next chunk");
+    at_ = *next;
+    in_summary_ = false;
+    return stopped() ? Next::kEnd : Next::kGoOn;
+  }
+  // A file that was cut off ends within a record.
+  if (fits) damaged(from, "a record that cannot be one");
+  return Next::kEnd;
+}
+
 Result<Reading::Next> Reading::record() {
   const std::uint64_t from = at_, left = source_.size() - at_;
   std::byte bytes[kRecordHead_bytes];
   if (left < kRecordHead_bytes) return Next::kEnd;
   NERITIC_TRY_STATUS(source_.read(at_, bytes));
-  McapCursor cursor(bytes);
-  const Head head{static_cast<McapOp>(cursor.number<std::uint8_t>()),
-                  cursor.number<std::uint64_t>()};
-  if (after_ == AfterDamage::kGoOn) {
-    // A record whose head is damaged goes on into the next chunk, or says that none comes.
-    read_summary();
-    const auto next = summary_chunks_.upper_bound(from);
-    const bool last = head.op == McapOp::kDataEnd || head.op == McapOp::kFooter;
-    if (next != summary_chunks_.end() && *next < source_.size() &&
-        (last || head.length > *next - from || from + kRecordHead_bytes + head.length > *next)) {
-      damaged(from, "a record that does not end before the next chunk");
-      at_ = *next;
-      return Next::kGoOn;
-    }
-  }
-  // A file that was cut off ends within a record.
-  if (head.length > left - kRecordHead_bytes) return Next::kEnd;
+  const Head head = head_of(bytes);
+  if (!sound(head, from)) return past(head, from);
   if (head.length > kMostRecord_bytes) {
     damaged(from, fmt::format("a record of {} bytes; accepted: up to {}", head.length,
                               kMostRecord_bytes));
@@ -345,45 +446,63 @@ Result<Reading::Next> Reading::record() {
   content_.resize(static_cast<std::size_t>(head.length));
   NERITIC_TRY_STATUS(source_.read(at_ + kRecordHead_bytes, content_));
   at_ += kRecordHead_bytes + head.length;
-  const std::span<const std::byte> content(content_);
+  const std::span<const std::byte> whole(content_);
   if (head.op == McapOp::kFooter)
-    summary_crc_ = crc_of(content.first(std::min<std::size_t>(16, content.size())),
-                          crc_of(bytes, summary_crc_));
+    summary_crc_ = crc_of(whole.first(16), crc_of(bytes, summary_crc_));
   else if (in_summary_)
-    summary_crc_ = crc_of(content, crc_of(bytes, summary_crc_));
+    summary_crc_ = crc_of(whole, crc_of(bytes, summary_crc_));
+  const std::uint64_t damages = report_.damages;
+  NERITIC_TRY_STATUS(content(head, from));
+  if (head.op == McapOp::kFooter) return Next::kEnd;
+  if (!in_summary_) data_crc_ = crc_of(whole, crc_of(bytes, data_crc_));
+  if (stopped()) return Next::kEnd;
+  if (report_.damages == damages) return Next::kGoOn;
+  // The length may be damaged, too.
+  NERITIC_TRY(const bool goes_on, sound_at(at_));
+  if (goes_on) return Next::kGoOn;
+  NERITIC_TRY(const auto next, next_chunk(from + 1));
+  if (next) at_ = *next, in_summary_ = false;
+  return Next::kGoOn;
+}
+
+// Of one record.
+Status Reading::content(Head head, std::uint64_t at) {
+  const std::span<const std::byte> content(content_);
   switch (head.op) {
     case McapOp::kSchema:
-      NERITIC_TRY_STATUS(schema(McapCursor(content), from));
-      break;
+      return schema(McapCursor(content), at);
     case McapOp::kChannel:
-      NERITIC_TRY_STATUS(channel(McapCursor(content), from));
-      break;
+      return channel(McapCursor(content), at);
     case McapOp::kMessage:
-      NERITIC_TRY_STATUS(message(McapCursor(content), from));
-      break;
+      return message(McapCursor(content), at);
     case McapOp::kChunk:
-      NERITIC_TRY_STATUS(chunk(content, from));
-      break;
+      in_summary_ = false;  // what said that the data end was damaged
+      return chunk(content, at);
     case McapOp::kAttachment:
-      NERITIC_TRY_STATUS(attachment(content, from));
-      break;
+      return attachment(content, at);
     case McapOp::kMetadata:
-      NERITIC_TRY_STATUS(metadata(McapCursor(content), from));
-      break;
+      return metadata(McapCursor(content), at);
+    case McapOp::kMessageIndex: {
+      McapCursor cursor(content);
+      cursor.take(2);
+      if (const auto bytes = cursor.number<std::uint32_t>();
+          !cursor.whole() || bytes != cursor.left())
+        damaged(at, "an index of messages with another size than it says");
+      return {};
+    }
     case McapOp::kDataEnd: {
       const auto crc = McapCursor(content).number<std::uint32_t>();
-      if (crc != 0 && crc != data_crc_) damaged(from, "a data section whose CRC differs");
+      if (crc != 0 && crc != data_crc_) damaged(at, "a data section whose CRC differs");
       in_summary_ = true;
-      break;
+      return {};
     }
     case McapOp::kFooter:
-      footer(content, from);
-      return Next::kEnd;
+      footer(content, at);
+      return {};
     default:
-      if (in_summary_) summary_record(head, McapCursor(content), from);
+      if (in_summary_) summary_record(head, McapCursor(content), at);
+      return {};
   }
-  if (!in_summary_) data_crc_ = crc_of(content, crc_of(bytes, data_crc_));
-  return stopped() ? Next::kEnd : Next::kGoOn;
 }
 
 Result<McapReport> Reading::run() {

@@ -2,7 +2,8 @@
 // of its own compresses them and waits for the disk. Bytes handed over are in the file half a
 // second later, so that a killed run, a full disk or a removed one leaves a file that reads up to
 // there. The memory is bounded: message() waits while much is not written, up to ten seconds; after
-// a failure everything is dropped at once.
+// a failure everything is dropped at once. A file of the same name that is there, whole or cut off
+// (.part), is kept as NAME_old1.mcap, as LabRecorder does; a warning says so.
 #pragma once
 
 #include <atomic>

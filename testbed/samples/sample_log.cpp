@@ -55,7 +55,11 @@ std::string topic_of(std::string_view stream) {
 
 SampleLogWriter::SampleLogWriter(recording::McapOut& out, const SampleLog& run,
                                  std::optional<std::int64_t> recorded_at_ns)
-    : out_(out), streams_(run.streams), channels_(run.streams.size()), schemas_(kPayloadKinds) {
+    : out_(out),
+      streams_(run.streams),
+      channels_(run.streams.size()),
+      schemas_(kPayloadKinds),
+      now_ns_(std::llround(1e9 * static_cast<double>(run.first_step) * run.step_s)) {
   recording::McapMetadata facts{kRunMetadata,
                                 {{"format", kRunFormat},
                                  {"program", std::string(program_version())},

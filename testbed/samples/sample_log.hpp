@@ -74,7 +74,7 @@ class SampleLogWriter {
   void sample(const Sample& sample);
   // The scene's time when that was on the host's clock.
   std::int64_t scene_ns(TimeNs host_ns) const { return now_ns_ - (host_ns_ - host_ns); }
-  // The scene's time of the newest step.
+  // The scene's time of the newest step; before it of the log's first.
   std::int64_t now_ns() const { return now_ns_; }
 
  private:

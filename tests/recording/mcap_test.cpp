@@ -196,6 +196,72 @@ TEST(Mcap, AfterARecordOfAWrongLengthItGoesOnWithTheNextChunk) {
 }
 
 // A chunk of the full size has all schemas and channels of its messages.
+// As many chunks, as a killed run leaves them: without an end.
+std::string unfinished(std::uint32_t chunks) {
+  McapWriter writer("ros2", "test");
+  const auto schema = writer.add_schema(ros_schema("sensor_msgs/msg/Imu"));
+  const auto a = writer.add_channel({schema, "/a", "cdr", {{"a", "1"}}});
+  for (std::uint32_t i = 0; i < chunks; ++i) {
+    writer.message({a, 2 * i, 100 + i, 90 + i, bytes_of("one")});
+    writer.message({a, 2 * i + 1, 200 + i, 190 + i, bytes_of("two")});
+    writer.end_chunk();
+  }
+  return writer.take();
+}
+
+// The head of a chunk's record lies 41 bytes before its packed bytes: 9 of kind and length, 28 of
+// times, size and CRC, 4 of the length of "zstd".
+TEST(Mcap, WithoutASummaryTooItGoesOnWithTheNextChunk) {
+  constexpr std::uint32_t kChunks = 8;
+  const std::string whole = unfinished(kChunks);
+  const std::size_t third = chunk_at(whole, 2) - 41, fourth = chunk_at(whole, 3) - 41;
+  McapVisitor nobody;
+  const auto expect_rest = [&](const std::string& changed, const std::string& what) {
+    const auto source = mcap_of(bytes_of(changed));
+    const auto all = read_mcap(*source, "a.mcap", nobody, AfterDamage::kGoOn);
+    ASSERT_TRUE(all.ok()) << what;
+    EXPECT_EQ(all->messages, 2 * (kChunks - 1)) << what;
+    EXPECT_GE(all->damages, 1u) << what;
+    // Who stops there says so, too: it is not only cut off.
+    const auto stop = read_mcap(*source, "a.mcap", nobody);
+    EXPECT_EQ(stop->messages, 4u) << what;
+    EXPECT_EQ(stop->damages, 1u) << what;
+  };
+  std::string changed = whole;
+  changed.replace(third, 60, std::string(60, '\0'));
+  expect_rest(changed, "zeros");
+  for (std::size_t bit = 0; bit < 64; ++bit) {
+    changed = whole;
+    changed[third + 1 + bit / 8] = static_cast<char>(changed[third + 1 + bit / 8] ^ (1 << bit % 8));
+    expect_rest(changed, fmt::format("bit {} of a length", bit));
+  }
+  changed = whole;
+  changed.erase(third + 20, 30);
+  expect_rest(changed, "bytes that are missing");
+  changed = whole;
+  changed.insert(third + 20, 30, 'x');
+  expect_rest(changed, "bytes too many");
+  changed = whole;
+  changed[fourth - 1] = static_cast<char>(changed[fourth - 1] ^ 1);  // of the index of messages
+  const auto index = read_mcap(*mcap_of(bytes_of(changed)), "a.mcap", nobody, AfterDamage::kGoOn);
+  EXPECT_EQ(index->messages, 2 * kChunks);
+}
+
+// Its addresses are wrong then.
+TEST(Mcap, WithBytesMissingInTheMiddleTheSummaryDoesNotLeadAstray) {
+  const std::string whole = three_chunks();
+  const std::size_t second = chunk_at(whole, 1);
+  McapVisitor nobody;
+  for (const std::size_t bytes : {1, 7, 30}) {
+    std::string changed = whole;
+    changed.erase(second + 4, bytes);
+    const auto all = read_mcap(*mcap_of(bytes_of(changed)), "a.mcap", nobody, AfterDamage::kGoOn);
+    ASSERT_TRUE(all.ok());
+    EXPECT_EQ(all->messages, 4u) << bytes;
+    EXPECT_FALSE(all->whole);
+  }
+}
+
 TEST(Mcap, AFullChunkStandsAlone) {
   McapWriter writer("ros2", "test");
   const auto schema = writer.add_schema(ros_schema("sensor_msgs/msg/Imu"));

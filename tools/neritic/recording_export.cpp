@@ -1,7 +1,9 @@
 #include "tools/neritic/recording_export.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "engine/core/files.hpp"
@@ -133,25 +135,65 @@ class NpyTopic final : public TopicFile {
   std::vector<double> rows_;
 };
 
-// Sound as 32-bit floats, or a signal of one number a message by its column.
+// A signal that comes in packets of samples, as a microphone's sound.
+struct Packet {
+  double begun_s = 0.0, rate_hz = 1.0;  // of its first sample
+  std::vector<double> samples;
+  double time_s(std::size_t i) const { return begun_s + static_cast<double>(i) / rate_hz; }
+};
+class Signal {
+ public:
+  // Nothing: the messages of that type have no packets.
+  static std::optional<Signal> of(const std::string& topic, const RosMessage& type) {
+    const auto samples = type.column("samples"), rate = type.column("rate_hz");
+    if (!samples || !rate || !type.columns()[*samples].list) return std::nullopt;
+    return Signal(topic, type, *samples, *rate);
+  }
+  // When it was captured counts, not when it came.
+  Result<Packet> read(const McapMessage& message) const {
+    auto values = type_.read(message.data);
+    if (!values) return not_whole(topic_);
+    return Packet{static_cast<double>(message.publish_ns) * 1e-9,
+                  std::clamp(recording::number_of((*values)[rate_]), 1.0, 1e6),
+                  std::move(std::get<std::vector<double>>((*values)[samples_]))};
+  }
+  const std::string& topic() const { return topic_; }
+
+ private:
+  Signal(std::string topic, RosMessage type, std::size_t samples, std::size_t rate)
+      : topic_(std::move(topic)), type_(std::move(type)), samples_(samples), rate_(rate) {}
+  std::string topic_;
+  RosMessage type_;
+  std::size_t samples_, rate_;
+};
+
+// As 32-bit floats at one rate; silence where packets were lost.
 class WavTopic final : public TopicFile {
  public:
-  WavTopic(fs::path path, std::string topic, RosMessage type, std::size_t samples, std::size_t rate)
-      : path_(std::move(path)),
-        topic_(std::move(topic)),
-        type_(std::move(type)),
-        samples_(samples),
-        rate_(rate) {}
+  WavTopic(fs::path path, Signal signal) : path_(std::move(path)), signal_(std::move(signal)) {}
   Status add(const McapMessage& message) override {
-    const auto values = type_.read(message.data);
-    if (!values) return not_whole(topic_);
-    rate_hz_ = recording::number_of((*values)[rate_]);
-    for (const double x : std::get<std::vector<double>>((*values)[samples_]))
-      sound_.push_back(static_cast<float>(x));
+    NERITIC_TRY(const Packet packet, signal_.read(message));
+    if (sound_.empty()) begun_s_ = packet.begun_s, rate_hz_ = packet.rate_hz;
+    // Clocks are known to milliseconds: less than half a packet is no gap.
+    const double lacks =
+        (packet.begun_s - begun_s_) * rate_hz_ - static_cast<double>(sound_.size());
+    if (lacks > 0.5 * static_cast<double>(packet.samples.size())) {
+      if (lacks > kMostSilence_s * rate_hz_)
+        return bad_input("{}: a gap of {:.0f} s; accepted: up to {:.0f} s in a .wav",
+                         printable(signal_.topic()), lacks / rate_hz_, kMostSilence_s);
+      sound_.resize(sound_.size() + static_cast<std::size_t>(std::llround(lacks)), 0.0f);
+      ++gaps_;
+      silence_s_ += lacks / rate_hz_;
+    }
+    for (const double x : packet.samples) sound_.push_back(static_cast<float>(x));
     return {};
   }
   Status finish() override {
-    const auto rate = static_cast<std::uint32_t>(std::clamp(rate_hz_, 1.0, 1e6));
+    if (gaps_ > 0)
+      log_warn("{}: {} gap{} of lost packets, {:.3g} s in all, {} silence",
+               printable(signal_.topic()), gaps_, gaps_ == 1 ? "" : "s", silence_s_,
+               gaps_ == 1 ? "is" : "are");
+    const auto rate = static_cast<std::uint32_t>(std::lround(rate_hz_));
     const auto bytes = static_cast<std::uint32_t>(sound_.size() * sizeof(float));
     std::string out = "RIFF";
     const auto put = [&](auto value) {
@@ -168,12 +210,58 @@ class WavTopic final : public TopicFile {
   }
 
  private:
+  static constexpr double kMostSilence_s = 3600.0;
   fs::path path_;
-  std::string topic_;
-  RosMessage type_;
-  std::size_t samples_, rate_;
-  double rate_hz_ = 1.0;
+  Signal signal_;
+  double begun_s_ = 0.0, rate_hz_ = 1.0, silence_s_ = 0.0;
+  std::uint64_t gaps_ = 0;
   std::vector<float> sound_;
+};
+
+// A row a sample, with the time when it was captured.
+class SignalCsv final : public TopicFile {
+ public:
+  SignalCsv(const fs::path& path, Signal signal) : signal_(std::move(signal)), file_(path) {}
+  Status add(const McapMessage& message) override {
+    NERITIC_TRY(const Packet packet, signal_.read(message));
+    std::string rows = std::exchange(head_, {});
+    for (std::size_t i = 0; i < packet.samples.size(); ++i)
+      rows += fmt::format("{:.9f},{}\n", packet.time_s(i), static_cast<float>(packet.samples[i]));
+    return file_.append(rows);
+  }
+  Status finish() override {
+    NERITIC_TRY_STATUS(file_.append(head_));
+    return file_.finish();
+  }
+
+ private:
+  Signal signal_;
+  std::string head_ = "captured_s,sample\n";
+  GrowingFile file_;
+};
+
+class SignalNpy final : public TopicFile {
+ public:
+  SignalNpy(fs::path path, Signal signal) : path_(std::move(path)), signal_(std::move(signal)) {}
+  Status add(const McapMessage& message) override {
+    NERITIC_TRY(const Packet packet, signal_.read(message));
+    for (std::size_t i = 0; i < packet.samples.size(); ++i) {
+      rows_.push_back(packet.time_s(i));
+      rows_.push_back(packet.samples[i]);
+    }
+    return {};
+  }
+  Status finish() override {
+    NERITIC_TRY_STATUS(write_npy(path_, rows_, {rows_.size() / 2, 2}));
+    return write_text(
+        path_.replace_extension(".json"),
+        json_text({{"topic", signal_.topic()}, {"columns", {"captured_s", "sample"}}}) + "\n");
+  }
+
+ private:
+  fs::path path_;
+  Signal signal_;
+  std::vector<double> rows_;
 };
 
 // A picture a message: of a camera or a sonar.
@@ -234,6 +322,28 @@ class XdfTopic final : public TopicFile {
   std::uint32_t id_ = 0;
 };
 
+// A sample at its time; the stream has the rate of the first packet.
+class XdfSignal final : public TopicFile {
+ public:
+  XdfSignal(Xdf& xdf, Signal signal) : xdf_(xdf), signal_(std::move(signal)) {}
+  Status add(const McapMessage& message) override {
+    NERITIC_TRY(const Packet packet, signal_.read(message));
+    const std::string& topic = signal_.topic();
+    if (!id_)
+      id_ = xdf_.writer.add_stream(
+          {topic, topic.substr(topic.rfind('/') + 1), {"sample"}, packet.rate_hz});
+    for (std::size_t i = 0; i < packet.samples.size(); ++i)
+      xdf_.writer.sample(*id_, packet.time_s(i), {&packet.samples[i], 1});
+    return xdf_.file.append(xdf_.writer.take());
+  }
+  Status finish() override { return {}; }
+
+ private:
+  Xdf& xdf_;
+  Signal signal_;
+  std::optional<std::uint32_t> id_;
+};
+
 class ExportVisitor final : public recording::McapVisitor {
  public:
   ExportVisitor(const RecordingFlags& flags, const fs::path& xdf) : flags_(flags) {
@@ -288,16 +398,17 @@ class ExportVisitor final : public recording::McapVisitor {
   std::unique_ptr<TopicFile> file_of(const std::string& topic, const std::string& name,
                                      const recording::McapSchema& schema, RosMessage type) {
     const fs::path path = flags_.out / (name + "." + flags_.format);
+    if (auto signal = Signal::of(topic, type)) {
+      if (flags_.format == "csv") return std::make_unique<SignalCsv>(path, std::move(*signal));
+      if (flags_.format == "npy") return std::make_unique<SignalNpy>(path, std::move(*signal));
+      if (flags_.format == "xdf") return std::make_unique<XdfSignal>(*xdf_, std::move(*signal));
+      if (flags_.format == "wav") return std::make_unique<WavTopic>(path, std::move(*signal));
+    }
     if (flags_.format == "csv") return std::make_unique<CsvTopic>(path, topic, std::move(type));
     if (flags_.format == "npy") return std::make_unique<NpyTopic>(path, topic, std::move(type));
     if (flags_.format == "xdf") {
       if (number_columns(type).empty()) return nullptr;
       return std::make_unique<XdfTopic>(*xdf_, topic, std::move(type));
-    }
-    if (flags_.format == "wav") {
-      const auto samples = type.column("samples"), rate = type.column("rate_hz");
-      if (!samples || !rate || !type.columns()[*samples].list) return nullptr;
-      return std::make_unique<WavTopic>(path, topic, std::move(type), *samples, *rate);
     }
     if (!is_picture(schema.name)) return nullptr;
     return std::make_unique<PngTopic>(flags_.out / name, topic, schema.name, std::move(type));
