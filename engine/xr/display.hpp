@@ -114,6 +114,10 @@ struct ShownPicture {
 class Display {
  public:
   virtual ~Display() = default;
+  // The groups of views that frames will have, known before the first: whoever draws can make ready
+  // for them, since a late frame is seen as a fault. Empty: frames may come late, or the groups are
+  // not known yet. Where the views look is known with a frame alone.
+  virtual std::vector<ViewGroup> groups_ahead() const { return {}; }
   // Waits until the display wants a frame; one without a screen does not wait. world_from_stage:
   // where the space in which the display tracks lies in the world; displays without tracking do not
   // use it.

@@ -16,9 +16,13 @@ constexpr const char* kSwimWords =
     "I K the jacket; P lets go";
 constexpr double kSpeeds[] = {0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0};
 
+}  // namespace
+
 std::uint32_t scaled(std::uint32_t pixels, double scale) {
   return static_cast<std::uint32_t>(std::max(1.0, std::round(scale * pixels)));
 }
+
+namespace {
 
 bool is_on_vehicle(const scene::Scene& scene, const PhysicsWorld& world,
                    const scene::Mount& mount) {
@@ -116,6 +120,7 @@ Result<std::unique_ptr<DiveView>> DiveView::create(Session& session, xr::Display
     view->hud_ = std::make_unique<DiveHud>(session.device(), session.frames(), *physics,
                                            std::move(hud), options.devices);
   }
+  NERITIC_TRY_STATUS(view->prepare());
   return view;
 }
 
@@ -306,6 +311,16 @@ void DiveView::take_time(const DiveInput& input) {
   }
 }
 
+// What a group's pictures are like, by the camera of the viewpoint; neither size nor views.
+ViewsRequest DiveView::request_of(std::size_t group, std::uint32_t light) const {
+  const scene::Camera& camera = session_.scene().cameras[choice_.viewpoint().camera];
+  return {.name = group == 0 ? camera.name : fmt::format("{} {}", camera.name, group),
+          .exposure = camera.exposure,
+          .antialias = camera.antialias,
+          .detail = detail_at(camera.detail, light),
+          .thrift = thrift_at(light)};
+}
+
 void DiveView::add_views(FrameRequest& request) {
   const scene::MotionSource motion(session_.scene(), request.simulated);
   choice_.follow(motion, request.time_s);
@@ -319,11 +334,7 @@ void DiveView::add_views(FrameRequest& request) {
   const std::uint32_t worn = worn_object(motion, request.time_s);
   for (std::size_t i = 0; i < frame_.groups.size(); ++i) {
     const xr::ViewGroup& group = frame_.groups[i];
-    ViewsRequest views{.name = i == 0 ? camera.name : fmt::format("{} {}", camera.name, i),
-                       .exposure = camera.exposure,
-                       .antialias = camera.antialias,
-                       .detail = detail_at(camera.detail, quality().light),
-                       .thrift = thrift_at(quality().light)};
+    ViewsRequest views = request_of(i, quality().light);
     const double scale = view_scale();
     timeline_.current().view_scale = scale;
     views.views.width = scaled(group.width, scale);
@@ -416,10 +427,8 @@ Status DiveView::declare(graph::FrameGraph& graph, const SensorFrame& frame, dou
       continue;
     }
     if (views.index == 0) NERITIC_TRY_STATUS(picker_.declare(graph, views));
-    layers.push_back(xr::ProjectionLayer{.group = views.index,
-                                         .color = views.color,
-                                         .depth = views.depth,
-                                         .near_m = views.near_m});
+    layers.push_back(xr::ProjectionLayer{
+        .group = views.index, .color = views.color, .depth = views.depth, .near_m = views.near_m});
   }
   if (hud_) NERITIC_TRY_STATUS(declare_hud(graph, frame, time_s, layers));
   if (console_) {

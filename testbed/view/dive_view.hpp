@@ -26,6 +26,9 @@
 
 namespace neritic::testbed {
 
+// A view's width or height at a scale of it, at least 1.
+std::uint32_t scaled(std::uint32_t pixels, double scale);
+
 struct DiveViewOptions {
   std::size_t viewpoint = 0;          // of viewpoints_of(scene): where the view begins
   std::vector<std::size_t> sonars;    // of the scene, those that have a panel
@@ -56,7 +59,9 @@ struct DiveViewOptions {
 
 class DiveView final : public FrameView {
  public:
-  // overlay may be nullptr: no panels; physics too: nothing to fly. All outlive the view.
+  // overlay may be nullptr: no panels; physics too: nothing to fly. All outlive the view. Where the
+  // display's frames must not come late it draws its views unseen, so that their pipelines are
+  // made.
   static Result<std::unique_ptr<DiveView>> create(Session& session, xr::Display& display,
                                                   xr::Overlay* overlay, LivePhysics* physics,
                                                   const DiveViewOptions& options);
@@ -92,6 +97,9 @@ class DiveView final : public FrameView {
 
  private:
   DiveView(Session& session, xr::Display& display, DivePilot pilot, const DiveViewOptions& options);
+  Status prepare();
+  Status draw_unseen(std::span<const xr::ViewGroup> groups, double scale, std::uint32_t light);
+  ViewsRequest request_of(std::size_t group, std::uint32_t light) const;
   Pose world_from_stage(const scene::MotionSource& motion, double time_s);
   bool swum_by_keys(DiveInput& input);
   Status declare_sonars(graph::FrameGraph& graph, const SensorFrame& frame);

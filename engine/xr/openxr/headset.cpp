@@ -40,6 +40,7 @@ class OpenXrHeadset final : public Headset {
   const std::vector<std::string>& validation_messages() const override { return messages_; }
 
   Result<DisplayFrame> begin_frame(const Pose& world_from_stage) override;
+  std::vector<ViewGroup> groups_ahead() const override;
   bool paces_device() const override { return true; }
   void track(DisplayFrame& frame, const Pose& world_from_stage) override;
   Result<ShownPicture> declare(graph::FrameGraph& graph, const Pose& world_from_head,
@@ -124,6 +125,9 @@ Status OpenXrHeadset::start_session() {
   Parts parts;
   NERITIC_TRY(parts.session, Session::create(*runtime_, *device_, options_));
   NERITIC_TRY(parts.views, Views::create(*runtime_, *parts.session, *device_, !options_.overlay));
+  for (const Views::Group& group : parts.views->swapchains())
+    NERITIC_TRY_STATUS(
+        presenter_->make_ready(group.color->desc().format, group.color->desc().layers, true));
   NERITIC_TRY(parts.panels, Panels::create(*runtime_, *parts.session, *device_, *presenter_));
   NERITIC_TRY(parts.inputs, Inputs::create(*runtime_, *parts.session));
   parts_ = std::move(parts);
@@ -251,6 +255,12 @@ Status OpenXrHeadset::begin(DisplayFrame& frame) {
   fill(frame);
   fill_tracked(frame);
   return {};
+}
+
+// The session is made, but begins with the first frame: until then the runtime shows what it shows
+// while a program loads.
+std::vector<ViewGroup> OpenXrHeadset::groups_ahead() const {
+  return parts_.views && !options_.overlay ? parts_.views->groups() : std::vector<ViewGroup>();
 }
 
 void OpenXrHeadset::fill(DisplayFrame& frame) const {

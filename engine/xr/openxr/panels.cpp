@@ -12,6 +12,7 @@ Result<std::unique_ptr<Panels>> Panels::create(Runtime& runtime, const Session& 
   std::unique_ptr<Panels> panels(new Panels(runtime, session, device, presenter));
   NERITIC_TRY(const auto formats, swapchain_formats(runtime, session.handle()));
   NERITIC_TRY(panels->format_, choose_color(formats));
+  NERITIC_TRY_STATUS(presenter.make_ready(panels->format_, 1, false));
   return panels;
 }
 

@@ -70,6 +70,11 @@ Result<const gpu::Pipeline*> Presenter::pipeline_for(VkFormat format, std::uint3
   return &pipelines_.emplace(key, std::move(pipeline)).first->second;
 }
 
+Status Presenter::make_ready(VkFormat format, std::uint32_t layers, bool opaque) {
+  NERITIC_TRY_STATUS(pipeline_for(format, layers, opaque));
+  return {};
+}
+
 Status Presenter::declare(graph::FrameGraph& graph, const std::string& pass,
                           graph::ImageHandle from, const gpu::Image& target, bool opaque) {
   NERITIC_TRY(const gpu::Pipeline* const pipeline,

@@ -15,6 +15,8 @@ class Presenter {
  public:
   // The device must outlive it.
   static Result<std::unique_ptr<Presenter>> create(gpu::Device& device);
+  // Makes a pipeline before the frame that needs it.
+  Status make_ready(VkFormat format, std::uint32_t layers, bool opaque);
   // from: sRGB-encoded, colour multiplied by alpha, as many layers as target, scaled to its size.
   // opaque: alpha counts as 1. Adds a pass of that name; the image ends as the runtime wants it.
   Status declare(graph::FrameGraph& graph, const std::string& pass, graph::ImageHandle from,
