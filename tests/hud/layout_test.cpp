@@ -379,6 +379,43 @@ TEST(HudLayout, TheWristsScreenLiesOnTheArmAndEveryOtherFacesTheEyes) {
   }
 }
 
+// Degrees to the right and up from straight ahead, of a panel's whole face as it is held before the
+// eyes.
+struct SeenBox {
+  double left = 360.0, right = -360.0, bottom = 360.0, top = -360.0;
+};
+SeenBox seen_of(const Layout& layout) {
+  SeenBox out;
+  for (int i = 0; i <= 20; ++i)
+    for (int j = 0; j <= 20; ++j) {
+      const double x = layout.size_m.x * (i / 20.0 - 0.5), y = layout.size_m.y * (j / 20.0 - 0.5);
+      const double r = layout.radius_m;
+      const Vec3 on =
+          r > 0.0 ? Vec3(r * std::sin(x / r), y, r - r * std::cos(x / r)) : Vec3(x, y, 0);
+      const Vec3 at = layout.head_from_panel.position_m + layout.head_from_panel.rotation * on;
+      const double across = degrees(std::atan2(at.x, -at.z));
+      const double up = degrees(std::atan2(at.y, std::hypot(at.x, at.z)));
+      out = {std::min(out.left, across), std::max(out.right, across), std::min(out.bottom, up),
+             std::max(out.top, up)};
+    }
+  return out;
+}
+
+// The diver's own layouts may be worn together; the operator's console covers the view.
+TEST(HudLayout, NoneOfThoseThatADiverWearsCoversAnother) {
+  constexpr double kLeast_deg = 0.3;
+  for (const Layout& one : layouts())
+    for (const Layout& other : layouts()) {
+      if (&one == &other || one.lock == Lock::kWorld || other.lock == Lock::kWorld) continue;
+      const SeenBox a = seen_of(one), b = seen_of(other);
+      EXPECT_TRUE(a.left > b.right + kLeast_deg || b.left > a.right + kLeast_deg ||
+                  a.bottom > b.top + kLeast_deg || b.bottom > a.top + kLeast_deg)
+          << one.name << " from " << a.left << " to " << a.right << ", " << a.bottom << " to "
+          << a.top << "; " << other.name << " from " << b.left << " to " << b.right << ", "
+          << b.bottom << " to " << b.top;
+    }
+}
+
 // All dives of a layout, each over one of the waters, side by side.
 ImageU8 sheet_of(const Layout& layout) {
   const auto dives = all_dives();
