@@ -53,12 +53,18 @@ std::optional<std::size_t> vehicle_camera(const scene::Scene& scene, const Physi
   return std::nullopt;
 }
 
-// A camera's picture beside the views, no larger than it is shown.
+// A camera's picture beside the views, no larger than it is shown, and within the governor's budget
+// as they are.
 ViewsRequest beside_views(std::string name, const scene::Camera& camera,
-                          const scene::MotionSource& motion, double time_s) {
+                          const scene::MotionSource& motion, double time_s,
+                          const Quality& quality) {
   constexpr double kMostSide_px = 384.0;
-  const double scale = std::min(1.0, kMostSide_px / std::max(camera.width, camera.height));
-  ViewsRequest views{.name = std::move(name), .exposure = camera.exposure};
+  const double scale =
+      quality.view_scale * std::min(1.0, kMostSide_px / std::max(camera.width, camera.height));
+  ViewsRequest views{.name = std::move(name),
+                     .exposure = camera.exposure,
+                     .detail = detail_at(camera.detail, quality.light),
+                     .thrift = thrift_at(quality.light)};
   views.views.width = scaled(camera.width, scale);
   views.views.height = scaled(camera.height, scale);
   const Pose pose = motion.world_from(camera.mount, time_s);
@@ -373,7 +379,8 @@ void DiveView::add_inset(FrameRequest& request, const scene::MotionSource& motio
   if (!inset) return;
   inset_view_ = request.views.size();
   const scene::Camera& camera = session_.scene().cameras[*inset];
-  request.views.push_back(beside_views("inset " + camera.name, camera, motion, request.time_s));
+  request.views.push_back(
+      beside_views("inset " + camera.name, camera, motion, request.time_s, quality()));
 }
 
 // The vehicle's camera, for the pictures of the HUD's console that take a new one.
@@ -383,7 +390,8 @@ void DiveView::add_console_camera(FrameRequest& request, const scene::MotionSour
     return;
   camera_view_ = request.views.size();
   const scene::Camera& camera = session_.scene().cameras[*console_camera_];
-  request.views.push_back(beside_views("hud " + camera.name, camera, motion, request.time_s));
+  request.views.push_back(
+      beside_views("hud " + camera.name, camera, motion, request.time_s, quality()));
 }
 
 // When the picture is seen: the display's time; where none paces the frames, the pictures' own.

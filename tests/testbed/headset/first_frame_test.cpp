@@ -31,8 +31,7 @@ class HeadsetFirstFrame : public HeadsetRun {
   }
 };
 
-// A frame that makes pipelines is a gap of seconds (12 s for the first one of this scene): all are made
-// before.
+// A frame that makes pipelines is a gap of seconds, 12 for the first one of this scene.
 TEST_F(HeadsetFirstFrame, NoGapBetweenFramesIsLongOnceTheSessionRuns) {
   const ColdShaders cold;
   fakes::FakeHeadset fake("size 64 60\nreal_time yes\nperiod 0.05\n");

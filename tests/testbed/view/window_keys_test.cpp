@@ -274,6 +274,25 @@ TEST_F(ShownInWindow, AServerThatSharesNoMemoryShowsTheSamePicture) {
             2.0 * 640 * 480 * 4);
 }
 
+// At full quality it took four times as long as the view that the governor had made coarse.
+TEST_F(WindowKeys, TheInsetGivesWayWithTheViewWhereFramesAreLate) {
+  const std::string scene = (test::source_dir() / "assets/scenes/dive.toml").string();
+  const test::WindowRun run = test::drive_window(
+      scratch_.path(), "'" + scene + "' --size 640x360 --seconds 14 --timeline t.png",
+      {"wait 5", "key n"});
+  if (test::may_skip_without_device()) GTEST_SKIP() << run.err;
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto data = nlohmann::json::parse(test::text_of(scratch_ / "t.plot.json"), nullptr, false);
+  ASSERT_TRUE(data.is_object());
+  double inset_ms = 0.0, view_ms = 0.0;
+  for (const auto& frame : data["frames"])
+    for (const auto& pass : frame["passes"])
+      (pass[0].get<std::string>().starts_with("inset ") ? inset_ms : view_ms) +=
+          pass[1].get<double>();
+  EXPECT_GT(inset_ms, 0.0);
+  EXPECT_LT(inset_ms, view_ms);
+}
+
 TEST_F(WindowKeys, AReplayIsNeitherSavedNorRecorded) {
   ASSERT_EQ(dive("--seconds 3 --record whole.mcap").status, 0);
   const test::WindowRun run =
