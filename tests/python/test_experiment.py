@@ -5,6 +5,7 @@ import os
 import pathlib
 import pty
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -181,6 +182,26 @@ class Runs(unittest.TestCase):
                 self.assertEqual(os.listdir(scratch), [])  # what the runs wrote is gone
                 # They are kept as they ended, so that --resume has nothing left to do.
                 self.assertEqual(self.run_all(out, range(1, 9), workers, resume=True), results)
+
+    def test_a_folder_that_is_erased_meanwhile_is_not_made_again(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            out = os.path.join(scratch, "out")
+            os.mkdir(out)
+
+            def erase(settings, seed, tools):
+                shutil.rmtree(out)
+                return {"m": seed}, {}
+            runs = [scenario.Run(i, {}, i, {}) for i in range(50)]
+            plan = SimpleNamespace(name="x", kind_name="x", kind=SimpleNamespace(run=erase), run_limit_s=60.0, list_runs=lambda: runs,
+                                   fingerprint=lambda: "")
+            with self.assertRaisesRegex(scenario.Failed, "was removed while its runs were made"):
+                runner.run_all(plan, out, "none", 1, False, True)
+            import shark
+            import shark_person
+            settings = {k: v.default for k, v in shark.SETTINGS.items()} | {"person": "window"}
+            with self.assertRaisesRegex(scenario.Failed, "found no such folder any more"):
+                shark_person.Person(settings, 1, runner.Tools("none", scratch, out), "none.toml")
+            self.assertEqual(os.listdir(scratch), [])
 
     def test_the_limit_is_a_setting_that_decides_no_numbers(self):
         import echo_sounder
@@ -477,6 +498,64 @@ json.dump(heard, open(out, "w"))
                             "--answers", os.path.join(self.scratch, "answers")], capture_output=True, timeout=60)
             self.assertEqual(self.read("participants/P01/heard"), '["block begins", "seen"]')
             self.assertFalse(os.path.exists(os.path.join(self.folder, "participants/P01/markers.port")))
+
+    def begin_block(self):
+        """(`study run`, its block's program) once that writes into P01's folder; it goes on until it is ended."""
+        program, ready = os.path.join(self.scratch, "program"), os.path.join(self.scratch, "ready")
+        self.folder = os.path.join(self.scratch, "study")
+        self.write("program", f"""#!{sys.executable}
+import os, signal, sys, time
+ended = []
+signal.signal(signal.SIGTERM, lambda *_: ended.append(1))
+open(os.path.join(sys.argv[2], "begun"), "w").close()
+with open({ready!r} + ".tmp", "w") as file:
+    file.write(str(os.getpid()))
+os.rename({ready!r} + ".tmp", {ready!r})
+while not ended:
+    time.sleep(0.02)
+open(os.path.join(sys.argv[2], "whole"), "w").close()
+""")
+        os.chmod(program, 0o755)
+        self.write("plan.toml", self.PLAN + 'command = ["dive", "{folder}"]\n')
+        self.study("begin", "--plan", os.path.join(self.scratch, "plan.toml"))
+        self.study("enrol", answers="yes\n")
+        self.write("answers", "\n" + "50\n" * 6 + "\n")
+        run = subprocess.Popen([sys.executable, "-B", os.path.join(TOOLS, "study.py"), "--program", program, "run", self.folder, "P01",
+                                "--answers", os.path.join(self.scratch, "answers")], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        until = time.monotonic() + 30
+        while not os.path.exists(ready) and time.monotonic() < until:
+            time.sleep(0.02)
+        with open(ready) as file:
+            return run, int(file.read())
+
+    def test_no_block_outlives_a_withdrawal(self):
+        place = "participants/P01"
+        with tempfile.TemporaryDirectory() as self.scratch:
+            run, _ = self.begin_block()
+            status, text = self.study("withdraw", "P01", "--yes")
+            self.assertEqual((status, text.count("\n")), (2, 1), text)
+            self.assertIn("nothing is erased", text)
+            self.assertTrue(os.path.exists(os.path.join(self.folder, place, "begun")))
+            self.assertEqual(self.study("mark", "P01", "still here")[0], 0)  # it was refused, and the participant takes part
+            run.send_signal(signal.SIGTERM)  # ends the block first, which closes what it wrote
+            self.assertEqual(run.wait(30), 143)
+            self.assertIn("neritic: study: interrupted", run.stderr.read())
+            run.stderr.close()
+            self.assertTrue(os.path.exists(os.path.join(self.folder, place, "whole")))
+            self.assertEqual(self.study("withdraw", "P01", "--yes")[0], 0)
+            self.assertEqual(os.listdir(os.path.join(self.folder, "participants")), [])
+
+    def test_a_blocks_program_that_lost_its_study_is_waited_for_too(self):
+        with tempfile.TemporaryDirectory() as self.scratch:
+            run, program = self.begin_block()
+            run.kill()
+            run.communicate()
+            self.assertEqual(self.study("withdraw", "P01", "--yes")[0], 2)
+            os.kill(program, signal.SIGKILL)
+            until = time.monotonic() + 10
+            while self.study("withdraw", "P01", "--yes")[0] == 2 and time.monotonic() < until:
+                time.sleep(0.05)
+            self.assertEqual(os.listdir(os.path.join(self.folder, "participants")), [])
 
     def test_blocks_write_into_the_participants_folder_alone(self):
         with tempfile.TemporaryDirectory() as self.scratch:

@@ -182,13 +182,15 @@ def run_all(scenario, out, program, workers, resume, quiet):
     try:
         with open(path, "a", encoding="utf-8") as file:
             for result in made:
+                if os.fstat(file.fileno()).st_nlink == 0:
+                    raise Failed(f"{path}: was removed while its runs were made; no more are made")
                 if result is None:
                     progress.show()
                     continue
-                kept[json.dumps([result["condition"], result["seed"]], sort_keys=True)] = result
                 file.write(json.dumps(result) + "\n")
                 file.flush()
                 os.fsync(file.fileno())
+                kept[json.dumps([result["condition"], result["seed"]], sort_keys=True)] = result  # what is on the disk
                 progress.step()
     except OSError as error:
         raise Failed(f"{path}: cannot be written: {error.strerror}; {len(kept)} finished runs are kept") from None

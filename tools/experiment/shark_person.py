@@ -90,7 +90,12 @@ class Person:
     def __init__(self, s, seed, tools, scene):
         self.s, self.world, self.met_s, self.since, self.eyes, self.gaze = s, None, None, None, None, None
         folder = os.path.join(tools.out, "person")
-        os.makedirs(folder, exist_ok=True)
+        try:
+            os.mkdir(folder)  # not OUT itself: one that was erased meanwhile, as by a withdrawal, stays so
+        except FileExistsError:
+            pass
+        except FileNotFoundError:
+            raise Failed(f"{tools.out}: found no such folder any more") from None
         tries = 1
         while os.path.exists(os.path.join(folder, f"seed_{seed}_{tries}.markers.jsonl")):
             tries += 1

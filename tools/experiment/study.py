@@ -1,7 +1,8 @@
 """`neritic study`: a study with people, from consent to withdrawal. STUDIES.md has the plan's format and the files.
 
 A participant's data is under FOLDER/participants/PNN; scores.csv repeats the scores. study.json names blocks, orders and
-pseudonyms that were given, never a person. Exit status: 0 done, 1 could not, 2 bad input, 130 interrupted (what is answered is kept).
+pseudonyms that were given, never a person. Exit status: 0 done, 1 could not, 2 bad input, 130 interrupted, 143 by SIGTERM (what
+is answered is kept).
 """
 import argparse
 import contextlib
@@ -12,6 +13,7 @@ import io
 import json
 import os
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -22,6 +24,7 @@ import tomllib
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 
+import endings
 import questionnaires
 from report import write_file
 from scenario import Failed, Refused, check_keys
@@ -118,12 +121,49 @@ def alone(folder):
         os.close(handle)
 
 
+class Present:
+    """A participant's folder, locked while a command writes there, and while a block's program does, which inherits the lock.
+    Many may write at once; a withdrawal waits for none: it is refused while one writes, and what begins meanwhile is too."""
+
+    def __init__(self, folder, who, withdraws=False):
+        self.place = Study(folder).place(who, withdrawn_too=withdraws)
+        self.handle = None
+        try:
+            self.handle = os.open(self.place, os.O_RDONLY | os.O_DIRECTORY)
+            fcntl.flock(self.handle, (fcntl.LOCK_EX if withdraws else fcntl.LOCK_SH) | fcntl.LOCK_NB)
+            Study(folder).place(who, withdrawn_too=withdraws)  # withdrawn before the lock was had?
+        except FileNotFoundError:
+            if not withdraws:
+                raise Failed(f"{self.place}: found no folder; accepted: one that `neritic study enrol` made") from None
+        except BlockingIOError:
+            self.close()
+            if not withdraws:
+                raise Refused(f"{folder}: found {who}, whom another command withdraws; accepted: one who takes part") from None
+            raise Refused(f"study withdraw: found a command that still writes what {who} leaves (study run, ask or wizard, or the program of "
+                          "a block); accepted: end it first, by Ctrl-C in its terminal; nothing is erased") from None
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        if self.handle is not None:
+            os.close(self.handle)
+            self.handle = None
+
+
 def now():
     return {"unix_ns": time.time_ns(), "monotonic_ns": time.monotonic_ns()}
 
 
 # Where a block's program listens for markers (neritic dive --markers), while it runs.
 PORT = "markers.port"
+END_S = 60.0  # that a block's program has to end its recordings, when the study is ended
 
 
 def note(place, **what):
@@ -260,8 +300,13 @@ def enrol(asked, screen):
 
 
 def run(asked, screen):
+    with Present(asked.folder, asked.who) as present:
+        _run(asked, screen, present)
+
+
+def _run(asked, screen, present):
     study = Study(asked.folder)
-    who, place = asked.who, study.place(asked.who)
+    who, place = asked.who, present.place
     head = study.plan["study"]
     for name in head.get("before", []):
         questionnaire(study, who, name, "before", screen)
@@ -272,7 +317,7 @@ def run(asked, screen):
         if not os.path.exists(done):
             screen.say(f"\nBlock {turn} of {len(order)}: {block.get('about', block['name'])}")
             screen.ask("Press Enter to begin.")
-            _block(asked, place, block, turn)
+            _block(asked, present, block, turn)
             write_file(done, "")
         for name in head.get("after_block", []):
             questionnaire(study, who, name, block["name"], screen)
@@ -281,9 +326,24 @@ def run(asked, screen):
     screen.say(f"\n{who} has done all blocks. Thank you.")
 
 
-def _block(asked, place, block, turn):
+def _program_of(words, told, present):
+    """The exit status of a block's program, once it is over. What ends the study ends the program first."""
+    program = subprocess.Popen(words, stdout=told, stderr=subprocess.STDOUT, pass_fds=[present.handle])
+    try:
+        return program.wait()
+    except BaseException:
+        program.send_signal(signal.SIGTERM)  # also where a terminal's Ctrl-C reached it already: one wish
+        try:
+            program.wait(END_S)
+        finally:
+            program.kill()
+            program.wait()
+        raise
+
+
+def _block(asked, present, block, turn):
     """The block's program; {record} becomes a file of the participant's folder, numbered so that no try replaces another."""
-    tries = 1
+    tries, place = 1, present.place
     # A recording that a crash cut off stays as .mcap.part, under a number of its own.
     while any(os.path.exists(os.path.join(place, f"{block['name']}_{tries}{end}")) for end in ("", ".mcap", ".mcap.part", ".log")):
         tries += 1
@@ -298,7 +358,7 @@ def _block(asked, place, block, turn):
     try:
         if words:  # what the program tells is for the experimenter, not for the participant at the terminal
             with open(record + ".log", "w", encoding="utf-8") as told:
-                status = subprocess.run([asked.program, *words], stdout=told, stderr=subprocess.STDOUT).returncode
+                status = _program_of([asked.program, *words], told, present)
     finally:
         ended.set()
         if os.path.exists(listens):
@@ -312,7 +372,11 @@ def _block(asked, place, block, turn):
 
 
 def withdraw(asked, screen):
-    Study(asked.folder).place(asked.who, withdrawn_too=True)
+    with Present(asked.folder, asked.who, withdraws=True):
+        _withdraw(asked, screen)
+
+
+def _withdraw(asked, screen):
     if not asked.yes and screen.ask(f"This erases all that {asked.who} left, for good. Type {asked.who} to do it:") != asked.who:
         raise Failed(f"study withdraw: {asked.who} was not typed; nothing is erased")
     with alone(asked.folder) as study:
@@ -376,6 +440,7 @@ def main():
     parser.add_argument("--plan")
     parser.add_argument("--answers", help="a file of answers, one a line, in place of the keyboard: for rehearsals")
     parser.add_argument("--yes", action="store_true")
+    endings.listen()
     try:
         asked = parser.parse_args()
         screen = Screen(asked.answers)
@@ -390,14 +455,17 @@ def main():
         elif asked.what == "ask":
             if asked.text not in questionnaires.FORMS:
                 raise Refused(f"study ask: found {asked.text!r}; accepted: {', '.join(questionnaires.FORMS)}")
-            questionnaire(Study(asked.folder), asked.who, asked.text, time.strftime("asked_%Y%m%d_%H%M%S"), screen)
+            with Present(asked.folder, asked.who):
+                questionnaire(Study(asked.folder), asked.who, asked.text, time.strftime("asked_%Y%m%d_%H%M%S"), screen)
         elif asked.what == "mark":
-            note(Study(asked.folder).place(asked.who), marker=asked.text or "mark")
+            with Present(asked.folder, asked.who) as present:
+                note(present.place, marker=asked.text or "mark")
         elif asked.what == "withdraw":
             withdraw(asked, screen)
         elif asked.what == "wizard":
             import wizard
-            wizard.run(asked, Study(asked.folder).place(asked.who), lambda **w: note(Study(asked.folder).place(asked.who), **w))
+            with Present(asked.folder, asked.who) as present:
+                wizard.run(asked, present.place, lambda **what: note(present.place, **what))
         else:
             table(asked)
         return 0
@@ -407,9 +475,9 @@ def main():
     except (Failed, OSError) as error:
         print(f"neritic: {error}", file=sys.stderr)
         return 1
-    except KeyboardInterrupt:
+    except endings.Ended as ended:
         print("\nneritic: study: interrupted; what is answered is kept, the same command goes on", file=sys.stderr)
-        return 130
+        return ended.status
 
 
 if __name__ == "__main__":
