@@ -561,15 +561,28 @@ open(os.path.join(sys.argv[2], "whole"), "w").close()
         with tempfile.TemporaryDirectory() as self.scratch:
             self.folder = os.path.join(self.scratch, "study")
             begin = ("begin", "--plan", os.path.join(self.scratch, "plan.toml"))
-            for command in ('["dive", "--record", "out.mcap"]', '["dive", "--log=log.csv"]', '["dive", "--save"]'):
+            for command in ('["dive", "--record", "out.mcap"]', '["dive", "--log=log.csv"]', '["dive", "--save"]',
+                            '["dive", "--record", "{folder}_x.mcap"]', '["dive", "--record", "{folder}/../x.mcap"]',
+                            '["dive", "--record={record}/../../x.mcap"]', '["dive", "--record", "{folder}/{folder}/x.mcap"]',
+                            '["dive", "--record", ""]', '["dive", "--record", "x/{folder}/x.mcap"]',
+                            '["render", "a.toml", "--out", "{folder}/r", "--dump-graph", "/tmp/graph.txt"]', '["simulate", "lab", "--log", "l.csv"]'):
                 self.write("plan.toml", self.PLAN + f"command = {command}\n")
                 status, text = self.study(*begin)
                 self.assertEqual((status, text.count("\n")), (2, 1), text)
                 self.assertIn("the participant's own", text)
+            for command in ('["dive", "--keep", "{folder}/a"]', '["dive", "-o", "/tmp/a"]', '["dive", "--dump-graph", "{folder}/a"]'):
+                self.write("plan.toml", self.PLAN + f"command = {command}\n")
+                status, text = self.study(*begin)
+                self.assertEqual((status, text.count("\n")), (2, 1), text)
             self.write("plan.toml", self.PLAN.replace('name = "b"', 'name = "after"'))
             self.assertEqual(self.study(*begin)[0], 2)
-            self.write("plan.toml", self.PLAN + 'command = ["dive", "--record", "{record}.mcap", "--log={folder}/log.csv"]\n')
-            self.assertEqual(self.study(*begin)[0], 0)
+            for i, command in enumerate(('["-q", "dive", "s.toml", "--record", "{record}.mcap", "--log={folder}/log.csv", "--task", "Look!"]',
+                                         '["experiment", "shark", "--out", "{folder}", "--resume", "--set", "delay_s=0.5"]',
+                                         '["plan", "--log", "depths.csv", "--out={folder}/plan"]',
+                                         '["render", "a.toml", "--out", "{folder}/r", "--offset", "-1", "-.5", "0"]')):
+                self.write("plan.toml", self.PLAN + f"command = {command}\n")
+                self.folder = os.path.join(self.scratch, f"study {i}")
+                self.assertEqual(self.study(*begin), (0, f"{self.folder}: 2 blocks in 2 orders; balanced after every 2 participants\n"))
 
     def test_a_block_runs_a_command_of_the_program_alone(self):
         with tempfile.TemporaryDirectory() as self.scratch:
@@ -580,8 +593,16 @@ open(os.path.join(sys.argv[2], "whole"), "w").close()
                 self.assertEqual((status, text.count("\n")), (2, 1), text)
                 self.assertIn("accepted, as the first word: render, ", text)
             told = "".join(f.read_text() for f in pathlib.Path(TOOLS, "..", "neritic", "command_line").glob("*.cpp"))
-            import study
-            self.assertEqual(sorted(study.COMMANDS), sorted(re.findall(r'app\.add_subcommand\(\s*"(\w+)"', told)))
+            import block_commands
+            self.assertEqual(sorted([*block_commands.COMMANDS, "keys", "study"]), sorted(re.findall(r'app\.add_subcommand\(\s*"(\w+)"', told)))
+            known = {f for flags in block_commands.COMMANDS.values() for part in flags for f in part.split()} | block_commands.OF_ALL
+            found = {f for names in re.findall(r'"((?:-\w,)?--[\w,-]+)"', told) for f in re.findall(r"--([\w-]+)", names)}
+            self.assertGreater(len(found), 100)
+            self.assertEqual(found - known, {"client"})  # of keys
+            for plan in pathlib.Path(TOOLS, "..", "..", "assets", "experiments", "studies").glob("*.toml"):
+                if "[study]" in plan.read_text():
+                    self.folder = os.path.join(self.scratch, plan.stem)
+                    self.assertEqual(self.study("begin", "--plan", str(plan))[0], 0, plan)
 
     def test_a_withdrawal_that_is_not_confirmed_erases_nothing_and_says_so(self):
         with tempfile.TemporaryDirectory() as self.scratch:

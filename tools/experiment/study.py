@@ -24,17 +24,13 @@ import tomllib
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 
+import block_commands
 import endings
 import questionnaires
 from report import write_file
 from scenario import Failed, Refused, check_keys
 
 WORDS = ("begin", "enrol", "run", "ask", "mark", "withdraw", "table", "wizard")
-# Commands of the program (tools/neritic/command_line).
-COMMANDS = ("render", "sonar", "dive", "serve", "keys", "tradeoff", "check", "plan", "physio", "register", "experiment", "study",
-            "recording", "hud", "simulate", "doctor")
-# Flags of neritic whose value is a file or folder that a block writes.
-WRITES = ("--record", "--recordings", "--log", "--plot", "--save", "--screenshot", "--timeline", "--out")
 
 
 def read_plan(path):
@@ -67,21 +63,9 @@ def read_plan(path):
                           "not before or after")
         if not isinstance(block.get("command", []), list) or not all(isinstance(w, str) for w in block.get("command", [])):
             raise Refused(f"{path}: blocks[{i}].command: found {block['command']!r}; accepted: a list of words for neritic")
-        first = next((w for w in block.get("command", []) if not w.startswith("-")), None)
-        if block.get("command") and first not in COMMANDS:
-            raise Refused(f"{path}: blocks[{i}].command: found {first or block['command']!r}; accepted, as the first word: {', '.join(COMMANDS)}")
-        _check_writes(f"{path}: blocks[{i}].command", block.get("command", []))
+        block_commands.check(f"{path}: blocks[{i}].command", block.get("command", []))
         names.append(block["name"])
     return plan
-
-
-def _check_writes(where, words):
-    """Refuses a file outside the participant's folder, which a withdrawal would leave."""
-    for i, word in enumerate(words):
-        flag, mark, value = word.partition("=")
-        value = value if mark else "".join(words[i + 1:i + 2])
-        if flag in WRITES and (not value.startswith(("{record}", "{folder}")) or ".." in value.split("/")):
-            raise Refused(f"{where}: found {flag} {value}; accepted: {flag} {{record}}... or {{folder}}/..., the participant's own")
 
 
 class Study:
@@ -343,6 +327,7 @@ def _program_of(words, told, present):
 
 def _block(asked, present, block, turn):
     """The block's program; {record} becomes a file of the participant's folder, numbered so that no try replaces another."""
+    block_commands.check(f"{asked.folder}/study.json: block {block['name']}", block.get("command", []))  # of a study that began long ago, too
     tries, place = 1, present.place
     # A recording that a crash cut off stays as .mcap.part, under a number of its own.
     while any(os.path.exists(os.path.join(place, f"{block['name']}_{tries}{end}")) for end in ("", ".mcap", ".mcap.part", ".log")):
