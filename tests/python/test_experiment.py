@@ -159,12 +159,12 @@ def act(settings, seed, tools):
 class Runs(unittest.TestCase):
     """Runs whose code exits, dies or does not return."""
 
-    def run_all(self, out, seeds, workers, resume=False):
+    def run_all(self, out, seeds, workers, resume=False, run=act, program="none"):
         runs = [scenario.Run(i, {}, seed, {}) for i, seed in enumerate(seeds)]
-        plan = SimpleNamespace(name="x", kind_name="x", kind=SimpleNamespace(run=act), run_limit_s=3.0, list_runs=lambda: runs,
+        plan = SimpleNamespace(name="x", kind_name="x", kind=SimpleNamespace(run=run), run_limit_s=3.0, list_runs=lambda: runs,
                                fingerprint=lambda: "")
         with unittest.mock.patch.object(runner, "GRACE_S", 0.5):
-            return runner.run_all(plan, out, "none", workers, resume, True)
+            return runner.run_all(plan, out, program, workers, resume, True)
 
     def test_each_is_a_failed_run_and_the_others_go_on(self):
         for workers in (1, 2):
@@ -180,8 +180,36 @@ class Runs(unittest.TestCase):
                 self.assertEqual(causes[4:6], ["did not end within 3 s of the clock (run_limit_s)"] * 2)
                 self.assertIn("killed by SIGKILL", causes[6])
                 self.assertEqual(os.listdir(scratch), [])  # what the runs wrote is gone
-                # They are kept as they ended, so that --resume has nothing left to do.
-                self.assertEqual(self.run_all(out, range(1, 9), workers, resume=True), results)
+                # Those that gave nothing are made anew by --resume; the others stay as they ended.
+                again = self.run_all(out, range(1, 9), workers, resume=True, run=lambda settings, seed, tools: ({"m": 10 * seed}, {}))
+                self.assertEqual([r["measures"]["m"] for r in again], [1, 20, 30, 40, 50, 60, 70, 8])
+                self.assertEqual((again[0], again[7]), (results[0], results[7]))
+                with open(os.path.join(out, "runs.jsonl")) as file:
+                    self.assertEqual(len(file.readlines()), 1 + 8)
+
+    def test_a_run_that_failed_by_its_scenarios_rules_is_a_result(self):
+        def lost(settings, seed, tools):
+            return {"m": 0, "failure": "stage one not done in 3 s"}, {}
+        with tempfile.TemporaryDirectory() as out:
+            results = self.run_all(out, [1], 1, run=lost)
+            self.assertEqual(results[0]["failure"], "stage one not done in 3 s")
+            self.assertEqual(self.run_all(out, [1], 1, resume=True, run=lambda *_: ({"m": 1}, {})), results)
+
+    def test_results_of_another_program_are_not_gone_on_with(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out, program = os.path.join(folder, "out"), os.path.join(folder, "tools", "neritic")
+            core = os.path.join(folder, "python", "neritic", "_core.so")
+            for file in (program, core):
+                os.makedirs(os.path.dirname(file))
+                pathlib.Path(file).write_text("one")
+            os.mkdir(out)
+            self.run_all(out, [1], 1, program=program)
+            self.run_all(out, [1, 8], 1, program=program, resume=True)
+            for file in (program, core):
+                pathlib.Path(file).write_text("two!")
+                with self.assertRaisesRegex(scenario.Refused, "found results of another neritic"):
+                    self.run_all(out, [1, 8], 1, program=program, resume=True)
+                pathlib.Path(file).write_text("one")
 
     def test_a_folder_that_is_erased_meanwhile_is_not_made_again(self):
         with tempfile.TemporaryDirectory() as scratch:
@@ -212,6 +240,43 @@ class Runs(unittest.TestCase):
         for text in ("run_limit_s=0", "run_limit_s=x", "run_limit_s=[1,2]"):
             with self.assertRaisesRegex(scenario.Refused, r"run_limit_s: found .*; accepted: a number"):
                 scenario.Scenario(path, {"echo_sounder": echo_sounder}, sets=[text])
+
+
+class Files(unittest.TestCase):
+    """Of a task: those that decide a run's numbers."""
+
+    TASK = ('[experiment]\nkind = "task"\n[task]\nscene = "scene.toml"\ncontroller = "mine.py"\n[[stages]]\nname = "a"\nuntil = "time > 1"\n')
+
+    def test_an_edit_of_any_of_them_makes_a_run_anew(self):
+        import task
+        texts = {"t.toml": self.TASK, "scene.toml": 'include = ["parts/a.toml"]\n', "parts/a.toml": 'include = "b.toml"\n',
+                 "parts/b.toml": '[[objects]]\nname = "x"\nmodel = "x.gltf"\n', "parts/x.gltf": '{"buffers": [{"uri": "x.bin"}]}', "parts/x.bin": "1",
+                 "mine.py": "import os, json\nimport near\nfrom far.deep import thing\nW = os.path.join('w', 'no')\nX = 'weights.txt'\nclass Controller: pass\n",
+                 "near.py": "import math, mine\ndef late():\n    import later\n", "later.py": "", "far/__init__.py": "", "far/deep/__init__.py": "",
+                 "far/deep/thing.py": "from . import other\nfrom ..side import x\n", "far/deep/other.py": "", "far/side.py": "x = 1", "weights.txt": "1"}
+        with tempfile.TemporaryDirectory() as folder:
+            def write(name, text):
+                path = pathlib.Path(folder, name)
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text)
+
+            def files():
+                return scenario.Scenario(os.path.join(folder, "t.toml"), {"task": task.Task}).list_runs()[0].files
+            for name, text in texts.items():
+                write(name, text)
+            write("stranger.py", "")
+            before = files()
+            self.assertEqual(files(), before)
+            for name in texts:
+                if name != "t.toml":
+                    write(name, texts[name] + " ")
+                    self.assertNotEqual(files(), before, name)
+                    write(name, texts[name])
+                    self.assertEqual(files(), before, name)
+            write("stranger.py", "1")
+            self.assertEqual(files(), before)
+            write("mine.py", "def (")  # the run tells what is wrong with it
+            self.assertNotEqual(files(), before)
 
 
 class Progress(unittest.TestCase):

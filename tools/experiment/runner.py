@@ -19,6 +19,7 @@ import tempfile
 import time
 import traceback
 
+import files_read
 from scenario import Failed, Refused
 
 FORMAT = 3
@@ -62,6 +63,12 @@ def _result(run, measures, failure, series, wall_s, processor_s):
     return {"condition": run.condition, "seed": run.seed, "files": run.files, "settings": run.settings, "measures": measures,
             "failure": failure and " ".join(failure.split()), "series": series, "wall_s": round(wall_s, 3),
             "processor_s": round(processor_s, 3), "absent": {}}
+
+
+def is_broken(result):
+    """Whether a run gave nothing, as where it was killed, a disk was full or its code raised an error: --resume makes it anew. A run that
+    fails by its scenario's rules has measures, and is a result."""
+    return bool(result["failure"]) and not result["measures"]
 
 
 def _processor_s():
@@ -160,7 +167,8 @@ def run_all(scenario, out, program, workers, resume, quiet):
     """Every run's result, in the scenario's order. Interrupted: KeyboardInterrupt, what is finished is in the file."""
     path = os.path.join(out, "runs.jsonl")
     runs = scenario.list_runs()
-    head = {"format": FORMAT, "scenario": scenario.name, "kind": scenario.kind_name, "fingerprint": scenario.fingerprint()}
+    head = {"format": FORMAT, "scenario": scenario.name, "kind": scenario.kind_name, "fingerprint": scenario.fingerprint(),
+            "program": files_read.of_program(program)}
     kept = {}
     if os.path.exists(path):
         if not resume:
@@ -169,7 +177,10 @@ def run_all(scenario, out, program, workers, resume, quiet):
         if found.get("fingerprint") != head["fingerprint"]:
             raise Refused(f"{path}: found results of other settings; accepted: the scenario and --set that began it, "
                           "or another --out")
-        kept = {json.dumps([r["condition"], r["seed"]], sort_keys=True): r for r in results}
+        if found.get("program") != head["program"]:
+            raise Refused(f"{path}: found results of another neritic (program, Python package, assets or tools/experiment changed since); "
+                          "accepted: the one that began it, or another --out")
+        kept = {json.dumps([r["condition"], r["seed"]], sort_keys=True): r for r in results if not is_broken(r)}
         files = {r.key(): r.files for r in runs}  # a file that was edited since makes its runs anew
         kept = {k: r for k, r in kept.items() if files.get(k, r["files"]) == r["files"]}
     missing = [r for r in runs if r.key() not in kept]

@@ -12,6 +12,8 @@ import math
 import os
 import tomllib
 
+import files_read
+
 HERE = os.path.dirname(os.path.realpath(__file__))
 SHIPPED = os.path.normpath(os.path.join(HERE, "..", "..", "assets", "experiments"))
 STATISTICS = ("median", "mean", "min", "max", "share")
@@ -116,11 +118,6 @@ class Run:
 
     def key(self):
         return json.dumps([self.condition, self.seed], sort_keys=True)
-
-
-def _hash_of(path):
-    with open(path, "rb") as file:
-        return hashlib.sha256(file.read()).hexdigest()
 
 
 def draw(seed, key, low, high):
@@ -253,12 +250,12 @@ class Scenario:
 
     def _hashes(self, settings):
         """Hashes of the files that decide a run's numbers beside the settings."""
-        return [_hash_of(f) for f in getattr(self.kind, "files", lambda settings: [])(settings)]
+        return [files_read.hash_of(f) for f in getattr(self.kind, "files", lambda settings: [])(settings)]
 
     def fingerprint(self):
-        """The hash of what decides a single run's numbers, the content of files that settings name included: results of
-        another fingerprint are not resumed. Levels of factors are not in it, so that more of them can be added:
-        each run keeps the hashes of the files that its own levels name."""
+        """The hash of the settings that decide a single run's numbers: results of another fingerprint are not resumed. Levels of
+        factors are not in it, so that more of them can be added, nor are files: each run keeps the hashes of those that decide its
+        numbers, and is made anew where one was edited."""
         own = [self.data.get(k) for k in ("task", "stages", "measures")]
-        told = [self.kind_name, self.settings, self.vary, sorted(self.factors), own, self._hashes(self.settings)]
+        told = [self.kind_name, self.settings, self.vary, sorted(self.factors), own]
         return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:16]

@@ -4,6 +4,7 @@ import json
 import math
 
 import intervals as ours
+import runner
 
 
 def by_condition(results):
@@ -52,7 +53,7 @@ def summarise(scenario, results):
     return {"experiment": scenario.name, "title": scenario.title, "about": scenario.about, "kind": scenario.kind_name,
             "seed": scenario.seed, "runs": len(results),
             "processor_s": round(sum(r["processor_s"] for r in results), 1), "failed": sum(1 for r in results if r["failure"]),
-            "broken": sum(1 for r in results if r["failure"] and not r["measures"]),
+            "broken": sum(runner.is_broken(r) for r in results),
             "settings": scenario.settings, "vary": scenario.vary, "factors": scenario.factors,
             "conditions": conditions, "criteria": criteria, "passed": all(c["holds"] for c in criteria)}
 

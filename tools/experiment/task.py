@@ -14,6 +14,7 @@ import sys
 
 import numpy as np
 
+import files_read
 import task_figures
 from scenario import Failed, Refused
 from task_file import TaskFile
@@ -98,9 +99,9 @@ class Task(TaskFile):
     """A kind of experiment, made of a scenario's tables. Plain data: it goes to the worker processes."""
 
     def files(self, settings):
-        """The files that decide a run's numbers, beside the settings: scene, player and controller."""
+        """The files that decide a run's numbers, beside the settings: scene, player and controller, with those that they use."""
         own = {"baseline": self.controller, "null": None}.get(settings["controller"], settings["controller"])
-        return [f for f in (self.scene, self.player, own) if f]
+        return files_read.of_scene(self.scene) + [f for module in (self.player, own) if module for f in files_read.of_module(module)]
 
     def check(self, settings):
         """Refuses a controller that is not there, before anything runs."""
