@@ -1,5 +1,6 @@
 #include "engine/recording/ros_message.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <limits>
 #include <map>
@@ -37,7 +38,7 @@ class RosMessage::Parser {
       const std::size_t end = std::min(text.find('\n'), text.size());
       std::string_view line = text.substr(0, end);
       text.remove_prefix(std::min(end + 1, text.size()));
-      line = line.substr(0, line.find('#'));
+      line = {line.begin(), std::ranges::find(line, '#')};
       while (!line.empty() && (line.back() == ' ' || line.back() == '\r' || line.back() == '\t'))
         line.remove_suffix(1);
       while (!line.empty() && (line.front() == ' ' || line.front() == '\t')) line.remove_prefix(1);
