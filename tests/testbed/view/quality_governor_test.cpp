@@ -12,13 +12,18 @@ namespace {
 // A machine whose frame costs fixed_ms and full_ms at full resolution, with noise of 5 %.
 struct Machine {
   double fixed_ms, full_ms, period_ms = 0.0;
+  double light_saves = 0.0;  // the share of full_ms that each level of light takes off
   std::mt19937 random{7};
+
+  double mean_ms(const Quality& quality) const {
+    return fixed_ms +
+           full_ms * quality.view_scale * quality.view_scale * (1.0 - light_saves * quality.light);
+  }
 
   void run(QualityGovernor& governor, int frames) {
     std::normal_distribution<double> noise(1.0, 0.05);
     for (int i = 0; i < frames; ++i) {
-      const double scale = governor.quality().view_scale;
-      const double work_ms = (fixed_ms + full_ms * scale * scale) * noise(random);
+      const double work_ms = mean_ms(governor.quality()) * noise(random);
       governor.add(std::max(work_ms, period_ms), work_ms);
     }
   }
@@ -61,6 +66,39 @@ TEST(QualityGovernor, QualityComesBackWhenTheLoadEnds) {
   EXPECT_GT(governor.rung(), 3u);
   Machine{5.0, 20.0, 16.7}.run(governor, 1200);
   EXPECT_EQ(governor.rung(), 0u);
+}
+
+// A load that goes leaves the machine with room for some rungs, not for all. Resolution climbs to
+// the best one that fits but for the room that is kept, overshoots by a try at most, and stays.
+TEST(QualityGovernor, AfterALoadItClimbsAsFarAsThereIsRoomAndDoesNotSwing) {
+  constexpr double kBudget_ms = 50.0, kFixed_ms = 8.0;
+  for (double full_ms = 50.0; full_ms < 200.0; full_ms *= 1.15) {
+    QualityGovernor governor(kBudget_ms);
+    Machine{kFixed_ms, 600.0}.run(governor, 200);
+    const std::size_t loaded = governor.rung();
+    Machine machine{kFixed_ms, full_ms, 16.7, 0.15};
+    const auto work_ms = [&](std::size_t rung) { return machine.mean_ms(quality_rungs()[rung]); };
+    const auto changes_of = [&](int frames) {
+      int changes = 0;
+      for (int i = 0; i < frames; ++i) {
+        const std::size_t before = governor.rung();
+        machine.run(governor, 1);
+        changes += governor.rung() != before;
+      }
+      return changes;
+    };
+    // Half a minute and more to climb: a change a rung, and a try of the next one down again.
+    EXPECT_LE(changes_of(2000), static_cast<int>(loaded) + 6) << full_ms;
+    const std::size_t settled = governor.rung();
+    ASSERT_LT(settled, loaded) << full_ms;
+    EXPECT_LE(work_ms(settled), 1.08 * kBudget_ms) << full_ms;
+    // The rung above it would leave less than a quarter of the budget.
+    EXPECT_TRUE(settled == 0 || work_ms(settled - 1) > 0.75 * kBudget_ms)
+        << full_ms << ": rung " << settled << " of " << loaded;
+    EXPECT_LE(changes_of(1200), 6) << full_ms;
+    EXPECT_LE(std::abs(static_cast<int>(governor.rung()) - static_cast<int>(settled)), 1)
+        << full_ms;
+  }
 }
 
 TEST(QualityGovernor, AMachineThatCannotHoldItEndsAtTheLastRung) {
