@@ -100,7 +100,8 @@ TEST_F(HeadsetHud, FourViewsAreAsTheirGolden) {
       fmt::format("{}views 4\nsize 320 300\nfocus_size 480 480\nfocus_deg 20\n"
                   "fov -45 38 36 -44\nperiod 0.05\nout {}\nout_frames 8\n",
                   kWearer, folder()));
-  wear({hud::LayoutKind::kWrist, hud::LayoutKind::kCorner});
+  // Of the head, the wrist and the world.
+  wear({hud::LayoutKind::kWrist, hud::LayoutKind::kCorner, hud::LayoutKind::kConsole});
   NERITIC_ASSERT_STATUS(dive(scene_, 10));
   expect_golden("four_views.png", sheet(8, 4));
 }
