@@ -128,5 +128,18 @@ TEST_F(HeadsetCost, AStereoFrameOfTheWholeDiveTakesLittleOfOneCore) {
   EXPECT_LT(spent.frame_ms(12), 3.5);
 }
 
+// The same dive, of which the measurement leaves the layers out.
+using HeadsetWholeDive = HeadsetRun;
+
+TEST_F(HeadsetWholeDive, TheLayersHaveNothingToSay) {
+  fakes::FakeHeadset fake("size 16 16\nperiod 0.0111\n");
+  const scene::Scene scene =
+      scene::load_scene(test::source_dir() / "assets/scenes/dive.toml").value();
+  NERITIC_ASSERT_OK(const auto physics, LivePhysics::create(scene, LivePhysics::Pace::kPicture));
+  with(*physics);
+  with(DiveHudOptions{.layouts = {hud::LayoutKind::kWrist}});
+  NERITIC_ASSERT_STATUS(dive(scene, 10));
+}
+
 }  // namespace
 }  // namespace neritic::testbed

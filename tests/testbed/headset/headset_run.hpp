@@ -40,7 +40,7 @@ class HeadsetRun : public ::testing::Test {
     for (const std::string& message : headset->validation_messages()) openxr_.push_back(message);
     return status;
   }
-  // The layer (1.0.20) breaks rules itself where an instance is refused.
+  // For a test that measures time.
   void without_layer() { layer_ = false; }
   void without_validation() { validation_ = false; }
   void ask_for_rate(double hz) { refresh_hz_ = hz; }
