@@ -1,4 +1,5 @@
 """The parts of tools/experiment that need no program: orders, scores, studies, intervals, power. Exit 77: skipped."""
+import errno
 import io
 import math
 import os
@@ -231,6 +232,37 @@ class Runs(unittest.TestCase):
                 shark_person.Person(settings, 1, runner.Tools("none", scratch, out), "none.toml")
             self.assertEqual(os.listdir(scratch), [])
 
+    def test_what_a_run_prints_is_no_part_of_the_results(self):
+        code = f"""import sys
+sys.path.insert(0, {HERE!r})
+sys.argv[1:] = []
+import os, tempfile, test_experiment
+def tells(settings, seed, tools):
+    print("a line of the controller")
+    os.system("echo a line of its program")
+    return {{"m": seed}}, {{}}
+with tempfile.TemporaryDirectory() as out:
+    results = test_experiment.Runs().run_all(out, [1, 8], 1, run=tells)
+print([r["measures"] for r in results])
+"""
+        done = subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, text=True, timeout=60)
+        self.assertEqual((done.stdout, done.stderr.count("a line of the controller"), done.stderr.count("a line of its program")),
+                         ("[{'m': 1}, {'m': 8}]\n", 2, 2), done.stderr)
+
+    def test_runs_are_counted_as_kept_once_they_are_on_the_disk(self):
+        def full_after(n, real=os.fsync):
+            written = []
+
+            def sync(file):
+                written.append(file)
+                if len(written) > n:
+                    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+                real(file)
+            return sync
+        with tempfile.TemporaryDirectory() as out, unittest.mock.patch.object(os, "fsync", full_after(3)), \
+                self.assertRaisesRegex(scenario.Failed, "No space left on device; 3 finished runs are kept"):
+            self.run_all(out, range(10, 20), 1)
+
     def test_the_limit_is_a_setting_that_decides_no_numbers(self):
         import echo_sounder
         path = os.path.join(scenario.SHIPPED, "echo_sounder.toml")
@@ -240,6 +272,52 @@ class Runs(unittest.TestCase):
         for text in ("run_limit_s=0", "run_limit_s=x", "run_limit_s=[1,2]"):
             with self.assertRaisesRegex(scenario.Refused, r"run_limit_s: found .*; accepted: a number"):
                 scenario.Scenario(path, {"echo_sounder": echo_sounder}, sets=[text])
+
+
+class Endings(unittest.TestCase):
+    """`neritic experiment` that a signal ends, with a program of its own that does not return; begun as the program begins it, with
+    the signals held back."""
+
+    def begin(self, scratch):
+        os.mkdir(os.path.join(scratch, "temporary"))
+        program = pathlib.Path(scratch, "program")
+        program.write_text(f"#!/bin/sh\necho $$ >> '{scratch}/running'\nexec sleep 1000\n")
+        program.chmod(0o755)
+        return subprocess.Popen([sys.executable, "-B", TOOLS, "echo_sounder", "--out", os.path.join(scratch, "out"), "--program", str(program),
+                                 "--workers", "2"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                preexec_fn=lambda: signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]),
+                                env=os.environ | {"TMPDIR": os.path.join(scratch, "temporary")})
+
+    def wait_for(self, what):
+        until = time.monotonic() + 60
+        while not what() and time.monotonic() < until:
+            time.sleep(0.002)
+        self.assertTrue(what())
+
+    def test_each_signal_ends_it_with_one_line_and_nothing_left_behind(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            with tempfile.TemporaryDirectory() as scratch:
+                run, running = self.begin(scratch), pathlib.Path(scratch, "running")
+                self.wait_for(lambda: running.exists() and running.read_text().count("\n") == 2)
+                self.assertEqual(len(os.listdir(os.path.join(scratch, "temporary"))), 1)
+                run.send_signal(number)
+                told = run.communicate(timeout=60)[0]
+                self.assertEqual((run.returncode, told), (128 + number, "neritic: experiment: interrupted; finished runs are kept, --resume goes on\n"))
+                self.assertEqual(os.listdir(os.path.join(scratch, "temporary")), [])
+                for pid in running.read_text().split():
+                    self.wait_for(lambda: not os.path.exists(f"/proc/{pid}"))
+
+    def test_a_signal_while_it_is_loaded_is_told_in_one_line(self):
+        for wait_s in (0.0, 0.02, 0.05, 0.1):  # Python starts, then loads the modules
+            with tempfile.TemporaryDirectory() as scratch:
+                run = self.begin(scratch)
+                time.sleep(wait_s)
+                run.send_signal(signal.SIGINT)
+                told = run.communicate(timeout=60)[0]
+                self.assertEqual(run.returncode, 130, told)
+                self.assertRegex(told, r"^neritic: experiment: interrupted.*\n$")
+                self.assertEqual(told.count("\n"), 1, told)
+                self.assertEqual(os.listdir(os.path.join(scratch, "temporary")), [])
 
 
 class Files(unittest.TestCase):

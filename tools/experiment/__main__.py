@@ -1,6 +1,10 @@
 """neritic experiment: runs a scenario many times and reports it. The program starts this module; README.md has the
 format of scenarios. Exit status: 0 every criterion holds, 1 one does not, a run broke or it could not be done, 2 bad input,
-130 interrupted (finished runs are kept)."""
+130 interrupted, 143 by SIGTERM (finished runs are kept)."""
+# First of all, so that Ctrl-C while the rest is loaded is told in one line.
+import endings
+endings.wait_for_imports("neritic: experiment: interrupted before it began")
+
 import argparse
 import json
 import os
@@ -127,6 +131,7 @@ def main():
     parser.add_argument("--quiet", action="store_true")
     asked = parser.parse_args()
     try:
+        endings.listen()
         if asked.name in TRAINED:
             return train(asked)
         if asked.name == "tradeoff":
@@ -144,10 +149,10 @@ def main():
     except scenario.Failed as error:
         print(f"neritic: {error}", file=sys.stderr)
         return 1
-    except KeyboardInterrupt:
+    except endings.Ended as ended:
         kept = "nothing is kept" if asked.name in TRAINED else "finished runs are kept, --resume goes on"
         print(f"neritic: experiment: interrupted; {kept}", file=sys.stderr)
-        return 130
+        return ended.status
 
 
 if __name__ == "__main__":

@@ -25,19 +25,23 @@ def _heard():
 
 
 def wait_for_imports(line):
-    """Until listen(): a signal prints the line and ends at once. Nothing has begun that would have to be cleaned."""
+    """Until listen(): a signal prints the line and ends at once. Nothing has begun that would have to be cleaned. Signals that the
+    program held back while Python started (tools/neritic/experiment.cpp) are let through."""
     def end(number, _):
         os.write(2, f"{line}\n".encode())
         os._exit(128 + number)
     for number in _heard():
         signal.signal(number, end)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
 
 
 def listen():
     """From here on a signal raises Ended; a later one raises it again, which cuts the cleaning short."""
-    first_s = []
+    first_s, process = [], os.getpid()
 
     def end(number, _):
+        if os.getpid() != process:
+            os._exit(128 + number)  # a child that has not set handlers of its own
         now_s = time.monotonic()
         if first_s and now_s - first_s[0] < SAME_WISH_S:
             return

@@ -52,9 +52,11 @@ def write_file(path, data):
         with open(name, "wb") as file:
             file.write(data if isinstance(data, bytes) else data.encode())
         os.replace(name, path)
-    except OSError as error:
+    except BaseException as error:  # a signal's too
         if os.path.exists(name):
             os.remove(name)
+        if not isinstance(error, OSError):
+            raise
         raise Failed(f"{path}: cannot be written: {error.strerror}") from None
 
 

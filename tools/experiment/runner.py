@@ -19,6 +19,7 @@ import tempfile
 import time
 import traceback
 
+import endings
 import files_read
 from scenario import Failed, Refused
 
@@ -164,7 +165,7 @@ def read_results(path):
 
 
 def run_all(scenario, out, program, workers, resume, quiet):
-    """Every run's result, in the scenario's order. Interrupted: KeyboardInterrupt, what is finished is in the file."""
+    """Every run's result, in the scenario's order. Interrupted: endings.Ended, what is finished is in the file."""
     path = os.path.join(out, "runs.jsonl")
     runs = scenario.list_runs()
     head = {"format": FORMAT, "scenario": scenario.name, "kind": scenario.kind_name, "fingerprint": scenario.fingerprint(),
@@ -216,10 +217,18 @@ class _Worker:
 
     def __init__(self, do, program, out, grace_s):
         self.grace_s, self.run, self.folder, self.begun, self.ended = grace_s, None, None, 0.0, False
-        self.pipe, theirs = FORKS.Pipe()
-        self.process = FORKS.Process(target=_work, args=(theirs, do, program, out))
-        self.process.start()
-        theirs.close()
+        self.pipe, self.theirs = FORKS.Pipe()
+        self.process = FORKS.Process(target=_work, args=(self.theirs, do, program, out))
+
+    def start(self):
+        """Apart from its making, so that whoever has to end it knows it first."""
+        # No signal may reach a child that still has this process's handlers.
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, endings.SIGNALS)
+        try:
+            self.process.start()
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        self.theirs.close()
 
     def begin(self, run, folder):
         self.run, self.folder, self.begun = run, folder, time.monotonic()
@@ -258,6 +267,8 @@ class _Worker:
         if self.ended:
             return
         self.ended = True
+        if self.process.pid is None:
+            return
         try:
             if self.process.is_alive():
                 if self.run is None:
@@ -266,10 +277,14 @@ class _Worker:
                     self.process.terminate()
                 self.process.join(self.grace_s)
         finally:  # also where a second Ctrl-C ends the wait
-            self.process.kill()
-            self._kill_group()
+            self.kill()
         self.process.join()
         self.pipe.close()
+
+    def kill(self):
+        if self.process.pid is not None:
+            self.process.kill()
+            self._kill_group()
 
     def _kill_group(self):
         """With the programs that the run started."""
@@ -281,7 +296,10 @@ class _Worker:
 
 def _work(pipe, do, program, out):
     try:
-        signal.signal(signal.SIGTERM, _stop)
+        for number in endings.SIGNALS:
+            signal.signal(number, _stop)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, endings.SIGNALS)
+        os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # standard output is the results': a controller that prints is no part of them
         os.setpgid(0, 0)  # Ctrl-C goes to the main process alone, which ends this one
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
         while (asked := pipe.recv()) is not None:
@@ -302,12 +320,14 @@ def _results(do, runs, program, workers, out, limit_s, grace_s):
     try:
         for _ in range(max(1, min(workers, len(runs)))):
             pool.append(_Worker(do, program, out, grace_s))
+            pool[-1].start()
         while waiting or any(w.run for w in pool):
             for i, worker in enumerate(pool):
                 if worker.run is None and waiting:
                     if not worker.process.is_alive():
                         worker.end()
                         worker = pool[i] = _Worker(do, program, out, grace_s)
+                        worker.start()
                     number, run = waiting.popleft()
                     worker.begin(run, os.path.join(base, str(number)))
             busy = [w for w in pool if w.run]
@@ -320,9 +340,14 @@ def _results(do, runs, program, workers, out, limit_s, grace_s):
                 if result is not None:
                     yield result
     finally:
-        for worker in pool:
-            worker.end()
-        shutil.rmtree(base, ignore_errors=True)
+        try:
+            for worker in pool:
+                worker.end()
+        finally:  # also where a second Ctrl-C ends the wait
+            for worker in pool:
+                if worker.process.pid is not None and worker.process.is_alive():
+                    worker.kill()
+            shutil.rmtree(base, ignore_errors=True)
 
 
 def _write_lines(path, rows):

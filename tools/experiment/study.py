@@ -4,6 +4,14 @@ A participant's data is under FOLDER/participants/PNN; scores.csv repeats the sc
 pseudonyms that were given, never a person. Exit status: 0 done, 1 could not, 2 bad input, 130 interrupted, 143 by SIGTERM (what
 is answered is kept).
 """
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+import endings
+if __name__ == "__main__":  # first of all, so that Ctrl-C while the rest is loaded is told in one line
+    endings.wait_for_imports("neritic: study: interrupted before it began")
+
 import argparse
 import contextlib
 import csv
@@ -11,21 +19,17 @@ import fcntl
 import glob
 import io
 import json
-import os
 import shutil
 import signal
 import socket
 import subprocess
-import sys
 import threading
 import time
 import tomllib
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 
 import block_commands
-import endings
 import questionnaires
 from report import write_file
 from scenario import Failed, Refused, check_keys

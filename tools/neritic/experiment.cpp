@@ -1,5 +1,6 @@
 // `neritic experiment NAME` and `neritic study`: become the Python module tools/experiment, which
 // runs scenarios and studies and reports them. Ctrl-C goes straight to it.
+#include <signal.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -17,6 +18,12 @@ namespace {
 Status become(const char* what, const std::filesystem::path& module,
               std::vector<std::string> words) {
   words.insert(words.begin(), {"", "-B", module.string()});
+  // A signal that comes while Python starts would end it with a traceback. It waits until the
+  // module has its handlers (tools/experiment/endings.py), which lets it through.
+  sigset_t late{}, before{};
+  sigemptyset(&late);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&late, signal);
+  sigprocmask(SIG_BLOCK, &late, &before);
   for (const char* python : kPythons) {
     words.front() = python;
     std::vector<char*> argv;
@@ -24,7 +31,9 @@ Status become(const char* what, const std::filesystem::path& module,
     argv.push_back(nullptr);
     ::execvp(python, argv.data());
   }
-  return failure(ErrorCode::kIo, "{}: no Python here: {}", what, std::strerror(errno));
+  const int error = errno;
+  sigprocmask(SIG_SETMASK, &before, nullptr);
+  return failure(ErrorCode::kIo, "{}: no Python here: {}", what, std::strerror(error));
 }
 
 Result<std::filesystem::path> module_of(const char* what) {
