@@ -76,8 +76,9 @@ class Sonar(unittest.TestCase):
 class Pages(unittest.TestCase):
     def test_the_page_of_all_tells_what_failed_and_what_is_missing(self):
         criterion = {"measure": "m", "statistic": "median", "where": {}, "less": None, "found": 0.5, "n": 3, "of": 3, "at_most": 1.0,
-                     "at_least": None, "holds": True}
-        told = {"experiment": "one", "runs": 3, "processor_s": 90.0, "criteria": [criterion, {**criterion, "holds": False}]}
+                     "at_least": None, "holds": True, "counts": True}
+        told = {"experiment": "one", "runs": 3, "processor_s": 90.0, "criteria": [criterion, {**criterion, "holds": False},
+                                                                                            {**criterion, "holds": False, "counts": False}]}
         with tempfile.TemporaryDirectory() as folder:
             report.index([told], [("two", "no <GPU>")], ["three"], folder)
             with open(os.path.join(folder, "index.html")) as file:
@@ -96,7 +97,7 @@ class Judging(unittest.TestCase):
         results = [{"condition": {"b": b}, "seed": i, "settings": {"b": b}, "measures": {} if v is None else {"m": v},
                     "failure": "no" if v is None else None, "processor_s": 0} for b, group in enumerate(groups) for i, v in enumerate(group)]
         scenario = SimpleNamespace(kind=SimpleNamespace(MEASURES={"m": ("s", "")}), criteria=[{"measure": "m", **criterion}],
-                                   name="", title="", about="", kind_name="", seed=1, settings={}, vary={}, factors={})
+                                   name="", title="", about="", kind_name="", seed=1, settings={}, vary={}, factors={}, added=[], replaced=set())
         told = summary.summarise(scenario, results)
         return told["criteria"][0], told
 
@@ -124,6 +125,55 @@ class Judging(unittest.TestCase):
         self.assertTrue(self.judge([[9.0, 8.0, 9.0], [1.0, 1.0, 1.0]], **both)[0]["holds"])
         self.assertFalse(self.judge([[9.0, None, None], [1.0, 1.0, 1.0]], **both)[0]["holds"])
         self.assertFalse(self.judge([[9.0, 8.0, 9.0], [1.0, None, None]], **both)[0]["holds"])
+
+    def compare(self, sets, numbers, tables="", of="m"):
+        """(summary, criteria as {words: verdict}) of a task with its measure m of each controller's runs, as --set asks for them."""
+        import task
+        text = ('[experiment]\nkind = "task"\nruns = 2\n[task]\nscene = "s.toml"\ncontroller = "mine.py"\n[task.settings]\n'
+                'b = { default = 0.0, meaning = "" }\n[[stages]]\nname = "a"\nuntil = "time > 1"\n'
+                '[[measures]]\nname = "m"\nof = "time"\n' + tables)
+        with tempfile.TemporaryDirectory() as folder:
+            for name, content in (("t.toml", text), ("s.toml", ""), ("mine.py", ""), ("yours.py", "")):
+                pathlib.Path(folder, name).write_text(content)
+            plan = scenario.Scenario(os.path.join(folder, "t.toml"), {"task": task.Task}, sets=[s.replace("DIR", folder) for s in sets])
+            results = [{"condition": r.condition, "seed": r.seed, "settings": r.settings, "failure": None, "processor_s": 0.0,
+                        "measures": {"m": numbers[os.path.basename(str(r.settings["controller"]))] + r.settings["b"]}} for r in plan.list_runs()]
+            told = summary.summarise(plan, results)
+            return told, {report.claim(c).replace(folder + "/", ""): report.verdict(c) for c in told["criteria"]}
+
+    LIMIT = '[[criteria]]\nmeasure = "m"\nat_most = 1.0\n'
+
+    def test_a_criterion_is_of_each_controller_by_itself(self):
+        sets, numbers = ['controller=["baseline", "null", "DIR/yours.py"]'], {"baseline": 0.5, "null": 9.0, "yours.py": 0.9}
+        told, verdicts = self.compare(sets, numbers, self.LIMIT)
+        self.assertEqual(verdicts, {"median of m (controller baseline)": "holds", "median of m (controller null)": "not asked",
+                                    "median of m (controller yours.py)": "holds"})
+        self.assertTrue(told["passed"])
+        lines = report.comparison(told)
+        self.assertRegex(lines[0], r"controller baseline +controller null +controller .*yours.py$")
+        self.assertRegex(lines[1], r"^m +0.5 +9 +0.9$")
+        told, verdicts = self.compare(sets, numbers | {"yours.py": 1.5}, self.LIMIT)
+        self.assertEqual((told["passed"], list(verdicts.values())), (False, ["holds", "not asked", "does not hold"]))
+        # Alone, the null robot is judged as any other.
+        self.assertFalse(self.compare(['controller="null"'], numbers, self.LIMIT)[0]["passed"])
+        self.assertFalse(self.compare(['controller=["null"]'], numbers, self.LIMIT)[0]["passed"])
+
+    def test_a_criterion_is_of_each_level_that_was_asked_for(self):
+        told, verdicts = self.compare(["b=[0, 2]"], {"baseline": 0.5}, self.LIMIT)
+        self.assertEqual(verdicts, {"median of m (b 0)": "holds", "median of m (b 2)": "does not hold"})
+        # The scenario's own factors are together, as it says.
+        own = "[factors]\nb = [0.0, 0.75]\n"
+        told, verdicts = self.compare([], {"baseline": 0.5}, own + self.LIMIT)
+        self.assertEqual((verdicts, report.comparison(told)), ({"median of m": "holds"}, []))
+        differs = own + '[[criteria]]\nmeasure = "m"\nat_least = 0.5\nwhere = { b = 0.75 }\nless = { b = 0.0 }\n'
+        told, verdicts = self.compare(['controller=["baseline", "DIR/yours.py"]'], {"baseline": 0.5, "yours.py": 7.0}, differs)
+        self.assertEqual(verdicts, {f"median of m (b 0.75, controller {c}) less that of b 0, controller {c}": "holds" for c in ("baseline", "yours.py")})
+
+    def test_a_criterion_of_a_condition_that_was_left_out_is_not_judged(self):
+        tables = '[factors]\nb = [0.0, 3.0]\n' + self.LIMIT + 'where = { b = 3.0 }\n'
+        told, verdicts = self.compare(["b=0.0"], {"baseline": 0.5}, tables)
+        self.assertEqual((verdicts, told["passed"]), ({"median of m (b 3)": "not run"}, True))
+        self.assertFalse(self.compare([], {"baseline": 0.5}, tables.replace("b = 3.0 }", "b = 4.0 }"))[0]["passed"])  # nobody left it out
 
     def test_broken_runs_are_counted(self):
         self.assertEqual(self.judge([1.0, None], at_most=3.0)[1]["broken"], 1)

@@ -109,12 +109,15 @@ def trade(asked):
 def tell(told, out):
     print(f"{told['experiment']}: {told['runs']} runs, {told['failed']} failed; {out}/report.html")
     for c in told["criteria"]:
-        print(f"  {'holds' if c['holds'] else 'DOES NOT HOLD':<14}{report.claim(c)}: {report.found(c)}; asked: {report.limit(c)}")
+        verdict = report.verdict(c)
+        print(f"  {verdict.upper() if verdict == 'does not hold' else verdict:<14}{report.claim(c)}: {report.found(c)}; asked: {report.limit(c)}")
     for condition in told["conditions"]:
         for cause, n in condition["failures"].items():
             print(f"  {n} runs failed ({report.words(condition['condition'])}): {cause}")
         for why, n in condition["absent"].items():
             print(f"  {n} runs gave no value ({report.words(condition['condition'])}): {why}")
+    for line in report.comparison(told):
+        print(f"  {line}")
 
 
 def main():

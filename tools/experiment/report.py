@@ -38,6 +38,18 @@ def found(c):
     return f"{number(c['found'])} ({runs})" if c["found"] is not None else f"not determined ({runs} gave a value)"
 
 
+def verdict(c):
+    """In words. The experiment is not judged by what was not run, and by what is not asked of the null robot."""
+    if c["counts"]:
+        return "holds" if c["holds"] else "does not hold"
+    return "not asked" if c["of"] else "not run"
+
+
+def _verdict_cell(c):
+    words_ = verdict(c)
+    return f'<span class="no">{words_}</span>' if words_ == "does not hold" else words_
+
+
 def limit(criterion):
     low, high = criterion["at_least"], criterion["at_most"]
     if low is not None and high is not None:
@@ -80,9 +92,8 @@ def _criteria_rows(summary):
     rows = ["<tr><th>criterion</th><th>asked</th><th>found</th><th></th></tr>"]
     for c in summary["criteria"]:
         name = claim(c)
-        verdict = "holds" if c["holds"] else '<span class="no">does not hold</span>'
         rows.append(f"<tr><td>{html.escape(name)}</td><td>{limit(c)}</td><td>{found(c)}</td>"
-                    f"<td>{verdict}</td></tr>")
+                    f"<td>{_verdict_cell(c)}</td></tr>")
     return "<table>" + "".join(rows) + "</table>" if summary["criteria"] else ""
 
 
@@ -110,6 +121,37 @@ def setting(summary, name):
     if name in summary["vary"]:
         return " to ".join(number(v) for v in summary["vary"][name])
     return number(summary["settings"][name])
+
+
+MOST_COLUMNS = 5
+
+
+def comparison(summary):
+    """Lines of text: the measures, side by side for each condition; none where --set made no factor."""
+    conditions = summary["conditions"]
+    if not summary["compared"] or len(conditions) < 2:
+        return []
+    if len(conditions) > MOST_COLUMNS:
+        return [f"numbers of {len(conditions)} conditions are in report.html"]
+    names = list(dict.fromkeys(name for c in conditions for name in c["measures"]))
+    rows = [["median or share (95 % interval)", *(words(c["condition"]) for c in conditions)]]
+    for name in names:
+        found_ = [c["measures"].get(name) for c in conditions]
+        unit = next(m["unit"] for m in found_ if m)
+        told = unit in ("", "yes or no") or name.endswith(f"_{unit}")
+        rows.append([name if told else f"{name} ({unit})", *(_short(m) for m in found_)])
+    rows.append(["runs", *(str(c["runs"]) for c in conditions)])
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
+
+
+def _short(m):
+    if m is None:
+        return "–"
+    scale, unit = (100, " %") if "share" in m else (1, "")
+    middle = number(m.get("share", m.get("median")) * scale)
+    spread = "" if m["low"] is None else f" ({number(m['low'] * scale)} to {number(m['high'] * scale)})"
+    return middle + unit + spread
 
 
 def page(scenario, summary, pictures, results=()):
@@ -159,17 +201,16 @@ def index(summaries, failed, missing, out):
         for i, c in enumerate(s["criteria"]):
             first = i == 0
             name = f"<a href=\"{s['experiment']}/report.html\">{s['experiment']}</a>" if first else ""
-            verdict = "holds" if c["holds"] else '<span class="no">does not hold</span>'
             count, cost = (f"{s['runs']}", f"{s['processor_s']:.0f}") if first else ("", "")
             rows.append(f"<tr><td>{name}</td><td style=\"text-align:left\">{html.escape(claim(c))}</td><td>{limit(c)}</td>"
-                        f"<td>{found(c)}</td><td>{verdict}</td><td>{count}</td><td>{cost}</td></tr>")
+                        f"<td>{found(c)}</td><td>{_verdict_cell(c)}</td><td>{count}</td><td>{cost}</td></tr>")
     for name, why in failed:
         rows.append(f"<tr><td>{name}</td><td colspan=\"6\" style=\"text-align:left\"><span class=\"no\">could not be done:</span> "
                     f"{html.escape(why)}</td></tr>")
     for name in missing:
         rows.append(f"<tr><td>{name}</td><td colspan=\"6\" style=\"text-align:left\">not run yet</td></tr>")
-    held = sum(c["holds"] for s in summaries for c in s["criteria"])
-    told = (f"{held} of {sum(len(s['criteria']) for s in summaries)} criteria hold; {sum(s['runs'] for s in summaries)} runs took "
+    judged = [c["holds"] for s in summaries for c in s["criteria"] if c["counts"]]
+    told = (f"{sum(judged)} of {len(judged)} criteria hold; {sum(s['runs'] for s in summaries)} runs took "
             f"{sum(s['processor_s'] for s in summaries) / 60:.1f} minutes of one core.")
     text = (f"<!DOCTYPE html><html lang=\"en\"><meta charset=\"utf-8\"><title>Experiments</title><style>{STYLE}</style>"
             f"<h1>Experiments</h1><p>{told}</p><table>{''.join(rows)}</table></html>")

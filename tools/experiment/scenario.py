@@ -159,6 +159,7 @@ class Scenario:
             self.settings[key] = known[key].check(f"{path}: settings.{key}", value)
         self.vary = {k: self._range(k, v) for k, v in data.get("vary", {}).items()}
         self.factors = {k: self._levels(k, v) for k, v in data.get("factors", {}).items()}
+        self.added, self.replaced = [], set()  # factors of --set; keys of --set
         for text in sets:
             self._set(text)
         if hasattr(self.kind, "check"):  # of files that settings name, before anything runs
@@ -213,10 +214,13 @@ class Scenario:
             return
         self.vary.pop(key, None)
         self.factors.pop(key, None)
+        self.replaced.add(key)
+        self.added = [k for k in self.added if k != key]
         if isinstance(value, list):
             where, self.path = self.path, "--set"
             try:
                 self.factors[key] = self._levels(key, value)
+                self.added.append(key)
             finally:
                 self.path = where
         else:

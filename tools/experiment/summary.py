@@ -1,5 +1,6 @@
 """From the results of single runs to a summary by condition, and whether the scenario's criteria hold."""
 import collections
+import itertools
 import json
 import math
 
@@ -49,13 +50,34 @@ def summarise(scenario, results):
         absent = collections.Counter(f"{name}: {why}" for r in group for name, why in r.get("absent", {}).items())
         conditions.append({"condition": condition, "runs": len(group), "failed": sum(causes.values()),
                            "failures": dict(causes.most_common()), "absent": dict(absent.most_common()), "measures": measures})
-    criteria = [_judge(scenario, results, c) for c in scenario.criteria]
+    criteria = [_judge(scenario, results, part) for c in scenario.criteria for part in _by_level(scenario, c)]
     return {"experiment": scenario.name, "title": scenario.title, "about": scenario.about, "kind": scenario.kind_name,
             "seed": scenario.seed, "runs": len(results),
             "processor_s": round(sum(r["processor_s"] for r in results), 1), "failed": sum(1 for r in results if r["failure"]),
             "broken": sum(runner.is_broken(r) for r in results),
-            "settings": scenario.settings, "vary": scenario.vary, "factors": scenario.factors,
-            "conditions": conditions, "criteria": criteria, "passed": all(c["holds"] for c in criteria)}
+            "settings": scenario.settings, "vary": scenario.vary, "factors": scenario.factors, "compared": scenario.added,
+            "conditions": conditions, "criteria": criteria, "passed": all(c["holds"] for c in criteria if c["counts"])}
+
+
+def _by_level(scenario, criterion):
+    """The criterion at each level of the factors that --set made and that it does not name: a claim about one robot, or one
+    offset, is none about the runs of several together."""
+    named = {**criterion.get("where", {}), **criterion.get("less", {})}
+    free = [k for k in scenario.added if k not in named]
+    for levels in itertools.product(*(scenario.factors[k] for k in free)):
+        at = dict(zip(free, levels))
+        parts = {part: {**criterion.get(part, {}), **at} for part in ("where", "less") if part in criterion or part == "where"}
+        yield {**criterion, **parts}
+
+
+def _counts(scenario, groups, criterion):
+    """Whether the experiment is judged by it: not by the null robot beside others, which is there to be beaten, and not where --set left
+    out the condition that the criterion is of."""
+    parts = [criterion.get("where", {}), *([criterion["less"]] if "less" in criterion else [])]
+    others = any(level != "null" for level in scenario.factors.get("controller", []))
+    null = scenario.kind_name == "task" and others and any(p.get("controller") == "null" for p in parts) and "controller" in scenario.added
+    left_out = any(not group and scenario.replaced & part.keys() for group, part in zip(groups, parts))
+    return not null and not left_out
 
 
 def _judge(scenario, results, criterion):
@@ -85,4 +107,4 @@ def _judge(scenario, results, criterion):
     return {"measure": criterion["measure"], "statistic": name, "where": where, "less": less,
             "found": found if found is not None and math.isfinite(found) else None, "n": sum(len(v) for v in values),
             "of": sum(len(g) for g in groups), "at_most": criterion.get("at_most"), "at_least": criterion.get("at_least"),
-            "holds": holds}
+            "holds": holds, "counts": _counts(scenario, groups, criterion)}
