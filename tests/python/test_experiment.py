@@ -463,6 +463,24 @@ class Refusals(unittest.TestCase):
         self.assertIn("light (the nearest)", told)
         self.assertEqual(told.count("light"), 1, told)
 
+    def test_of_all_the_scenario_that_refuses_is_named(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            done = subprocess.run([sys.executable, "-B", TOOLS, "all", "--out", os.path.join(scratch, "out"), "--program", "none", "--set", "offset_m=1"],
+                                  capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+            self.assertRegex(done.stderr, '^neritic: imaging: --set: found "offset_m=1"; accepted: ')
+            self.assertEqual(os.listdir(os.path.join(scratch, "out")), [])
+
+    def test_a_seed_is_one_that_a_scenes_file_may_have(self):
+        import echo_sounder
+        path, most = os.path.join(scenario.SHIPPED, "echo_sounder.toml"), 2 ** 63 - 1
+        last = scenario.Scenario(path, {"echo_sounder": echo_sounder}, runs=3, seed=most - 2).list_runs()[-1].seed
+        self.assertEqual(last, most)
+        self.assertIn(f"seed = {most}\n", echo_sounder.SCENE.format(seed=last, floor=0, slope=0, farthest=1, bins=1, rate=1))
+        for seed in (most, -1, 2 ** 64):
+            with self.assertRaisesRegex(scenario.Refused, rf"--seed: found {seed}; accepted: a whole number in \[0, {most - 2}\]"):
+                scenario.Scenario(path, {"echo_sounder": echo_sounder}, runs=3, seed=seed)
+
     def test_a_scene_is_no_scenario(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "scene.toml")
@@ -819,9 +837,18 @@ open(os.path.join(sys.argv[2], "whole"), "w").close()
     def test_bad_words_are_refused_in_one_line(self):
         with tempfile.TemporaryDirectory() as self.scratch:
             self.folder = os.path.join(self.scratch, "study")
-            for words in (("beginn",), ("run",), ("run", "P01"), ("begin", "--plan", "none.toml"), ("ask", "P01", "mood")):
+            for words, told in ((("beginn",), "beginn"), (("run",), "no participant"), (("run", "P01"), "no study"), (("begin",), "found no --plan"),
+                                (("begin", "--plan", "none.toml"), "none.toml"), (("ask", "P01", "mood"), "mood"), (("ask", "P01"), "no questionnaire")):
                 status, text = self.study(*words)
                 self.assertEqual((status, text.count("\n")), (2, 1), text)
+                self.assertIn(told, text)
+            for wrong in ("before = 3", 'after = "ssq"', "after_block = [1]", "after = [[]]", "title = 3"):
+                key = wrong.split()[0]
+                self.write("plan.toml", "\n".join([wrong, *(line for line in self.PLAN.splitlines() if not line.startswith(key + " "))]).replace(
+                    wrong + "\n[study]", "[study]\n" + wrong))
+                status, text = self.study("begin", "--plan", os.path.join(self.scratch, "plan.toml"))
+                self.assertEqual((status, text.count("\n")), (2, 1), text)
+                self.assertIn(f"study.{key}: found", text)
 
 
 class Diver(unittest.TestCase):

@@ -6,6 +6,7 @@ import endings
 endings.wait_for_imports("neritic: experiment: interrupted before it began")
 
 import argparse
+import contextlib
 import json
 import os
 import sys
@@ -43,8 +44,8 @@ KINDS = {"imaging": imaging, "profiling": profiling, "echo_sounder": echo_sounde
 TRAINED = {"train_camera": ("camera", crops, 3), "train_sonar": ("sonar", sonar_crops, 1)}
 
 
-def one(path, asked, out):
-    return do(scenario.Scenario(path, KINDS, asked.runs, asked.seed, asked.set), asked, out)[0]
+def planned(name, asked):
+    return scenario.Scenario(scenario.path_of(name), KINDS, asked.runs, asked.seed, asked.set)
 
 
 def folder(out):
@@ -69,14 +70,28 @@ def do(plan, asked, out):
     return told, results
 
 
+@contextlib.contextmanager
+def named(name):
+    """Where one of many is refused, the line says which."""
+    try:
+        yield
+    except scenario.Refused as error:
+        raise scenario.Refused(f"{name}: {error}") from None
+
+
 def every(asked):
-    """Each shipped scenario; one that cannot be done is told, and the others go on. Returns (summaries, [(name, why)])."""
+    """Each shipped scenario, all checked before the first runs; one that cannot be done is told, and the others go on. Returns
+    (summaries, [(name, why)])."""
     folder(asked.out)
-    names, told, failed = scenario.names(), [], []
+    names, plans, told, failed = scenario.names(), {}, [], []
+    for name in names:
+        with named(name):
+            plans[name] = planned(name, asked)
     for i, name in enumerate(names):
         line = ""
         try:
-            told.append(one(scenario.path_of(name), asked, os.path.join(asked.out, name)))
+            with named(name):
+                told.append(do(plans[name], asked, os.path.join(asked.out, name))[0])
         except scenario.Failed as error:
             failed.append((name, str(error)))
             line = f"neritic: {name}: {error}"
@@ -139,7 +154,7 @@ def main():
             return train(asked)
         if asked.name == "tradeoff":
             return trade(asked)
-        told, failed = every(asked) if asked.name == "all" else ([one(scenario.path_of(asked.name), asked, asked.out)], [])
+        told, failed = every(asked) if asked.name == "all" else ([do(planned(asked.name, asked), asked, asked.out)[0]], [])
         if asked.json:
             print(json.dumps(told if asked.name == "all" else told[0], indent=2))
         elif not asked.quiet:

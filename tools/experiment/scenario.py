@@ -18,6 +18,7 @@ HERE = os.path.dirname(os.path.realpath(__file__))
 SHIPPED = os.path.normpath(os.path.join(HERE, "..", "..", "assets", "experiments"))
 STATISTICS = ("median", "mean", "min", "max", "share")
 MOST_RUNS = 1_000_000
+MOST_SEED = 2 ** 63 - 1  # of a scene's file, and of TOML
 RUN_LIMIT_S = 3600.0  # of the clock, that a run may take
 
 
@@ -81,7 +82,8 @@ def _number(where, value, low, high, whole=False):
     good = isinstance(value, int) if whole else isinstance(value, (int, float))
     if isinstance(value, bool) or not good or not (low <= value <= high):
         kind = "a whole number" if whole else "a number"
-        raise Refused(f"{where}: found {_words(value)}; accepted: {kind} in [{low:g}, {high:g}]")
+        low, high = (f"{v}" if isinstance(v, int) else f"{v:g}" for v in (low, high))
+        raise Refused(f"{where}: found {_words(value)}; accepted: {kind} in [{low}, {high}]")
     return value
 
 
@@ -149,7 +151,7 @@ class Scenario:
         self.runs = _number("--runs" if runs is not None else f"{path}: experiment.runs",
                             runs if runs is not None else head.get("runs", 1), 1, MOST_RUNS, True)
         self.seed = _number("--seed" if seed is not None else f"{path}: experiment.seed",
-                            seed if seed is not None else head.get("seed", 1), 0, 2 ** 53, True)
+                            seed if seed is not None else head.get("seed", 1), 0, MOST_SEED - self.runs + 1, True)
         self.run_limit_s = self._limit(f"{path}: experiment.run_limit_s", head.get("run_limit_s", RUN_LIMIT_S))
         known = self.kind.SETTINGS
         self.settings = {k: s.default for k, s in known.items()}

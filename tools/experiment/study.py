@@ -52,8 +52,10 @@ def read_plan(path):
         if not isinstance(study.get(key), str) or not study[key].strip():
             raise Refused(f"{path}: study.{key}: found {study.get(key)!r}; accepted: text")
     for key in ("before", "after_block", "after"):
+        if not isinstance(study.get(key, []), list):
+            raise Refused(f"{path}: study.{key}: found {study[key]!r}; accepted: a list of {', '.join(questionnaires.FORMS)}")
         for name in study.get(key, []):
-            if name not in questionnaires.FORMS:
+            if not isinstance(name, str) or name not in questionnaires.FORMS:
                 raise Refused(f"{path}: study.{key}: found {name!r}; accepted: {', '.join(questionnaires.FORMS)}")
     blocks = plan.get("blocks", [])
     if not isinstance(blocks, list) or not 1 <= len(blocks) <= 20:
@@ -250,7 +252,9 @@ def questionnaire(study, who, name, when, screen):
 
 
 def begin(asked):
-    plan = read_plan(asked.plan or "")
+    if not asked.plan:
+        raise Refused("study begin: found no --plan; accepted: --plan FILE, a study's plan in TOML (tools/experiment/STUDIES.md)")
+    plan = read_plan(asked.plan)
     if os.path.exists(os.path.join(asked.folder, "study.json")):
         raise Refused(f"{asked.folder}: found a study; accepted: a new folder")
     try:
@@ -443,7 +447,7 @@ def main():
             run(asked, screen)
         elif asked.what == "ask":
             if asked.text not in questionnaires.FORMS:
-                raise Refused(f"study ask: found {asked.text!r}; accepted: {', '.join(questionnaires.FORMS)}")
+                raise Refused(f"study ask: found {asked.text or 'no questionnaire'}; accepted: {', '.join(questionnaires.FORMS)}")
             with Present(asked.folder, asked.who):
                 questionnaire(Study(asked.folder), asked.who, asked.text, time.strftime("asked_%Y%m%d_%H%M%S"), screen)
         elif asked.what == "mark":

@@ -154,7 +154,7 @@ void add_experiment(CLI::App& app, CommandLine& line) {
   command->add_option("--runs", flags->runs, "runs of each condition, in place of the scenario's")
       ->check(between(1, 1000000));
   command->add_option("--seed", flags->seed, "seed of the first run, in place of the scenario's")
-      ->check(seed_number);
+      ->check(between<std::int64_t>(0, INT64_MAX));  // as a scene's file
   command->add_option("--set", flags->set,
                       "KEY=VALUE: a setting in place of the scenario's; a list [A, B] makes "
                       "conditions; may be repeated");
