@@ -282,6 +282,19 @@ class Runs(unittest.TestCase):
                 shark_person.Person(settings, 1, runner.Tools("none", scratch, out), "none.toml")
             self.assertEqual(os.listdir(scratch), [])
 
+    def test_a_studys_block_that_begins_anew_goes_on_with_its_results(self):
+        import shark
+        import study
+        plan = study.read_plan(os.path.join(scenario.SHIPPED, "studies", "shark.toml"))
+        for block in plan["blocks"]:
+            self.assertIn("--resume", block["command"])
+            sets = [w for flag, w in zip(block["command"], block["command"][1:]) if flag == "--set"]
+            # Another port at each attempt.
+            made = [scenario.Scenario(scenario.path_of(block["command"][1]), {"shark": shark}, sets=[w.replace("{markers}", port) for w in sets])
+                    for port in ("40001", "40002")]
+            self.assertNotEqual(made[0].settings, made[1].settings)
+            self.assertEqual(made[0].fingerprint(), made[1].fingerprint())
+
     def test_what_a_run_prints_is_no_part_of_the_results(self):
         code = f"""import sys
 sys.path.insert(0, {HERE!r})

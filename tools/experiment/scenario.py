@@ -93,9 +93,11 @@ def _word_of(where, value, accepted):
 
 
 class Setting:
-    """A value that a kind of experiment understands: its default, its limits or words, and what it means."""
+    """A value that a kind of experiment understands: its default, its limits or words, and what it means. decides: whether a run's
+    numbers depend on it."""
 
-    def __init__(self, default, meaning, low=None, high=None, words=None, whole=False):
+    def __init__(self, default, meaning, low=None, high=None, words=None, whole=False, decides=True):
+        self.decides = decides
         self.default, self.meaning, self.low, self.high, self.words, self.whole = default, meaning, low, high, words, whole
 
     def check(self, where, value):
@@ -263,5 +265,6 @@ class Scenario:
         factors are not in it, so that more of them can be added, nor are files: each run keeps the hashes of those that decide its
         numbers, and is made anew where one was edited."""
         own = [self.data.get(k) for k in ("task", "stages", "measures")]
-        told = [self.kind_name, self.settings, self.vary, sorted(self.factors), own]
+        decisive = {k: v for k, v in self.settings.items() if self.kind.SETTINGS[k].decides}
+        told = [self.kind_name, decisive, self.vary, sorted(self.factors), own]
         return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:16]

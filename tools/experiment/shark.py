@@ -53,7 +53,8 @@ SETTINGS = {
     "gaze_within_deg": Setting(5.0, "a person's gaze meets the shark within this angle, or half a metre of its middle", 0.5, 45.0),
     "gaze_held_s": Setting(0.15, "for so long", 0.0, 5.0),
     "find_s": Setting(60.0, "that a person has to find the shark", 1.0, 600.0),
-    "markers": Setting(0, "the port to which the dive's markers go, as of a study ({markers}); 0: a free one", 0, 65535, whole=True),
+    "markers": Setting(0, "the port to which the dive's markers go, as of a study ({markers}); 0: a free one", 0, 65535, whole=True,
+                       decides=False),
     "from_recording": Setting(False, "true: the run is recorded, replayed by the program and judged again from the replay's log"),
 }
 MEASURES = {
