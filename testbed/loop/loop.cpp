@@ -77,12 +77,20 @@ Status Loop::run() {
 
 void Loop::begin() {
   begun_ns_ = now_ns();
+  restart_images();
   if (parts_.physics) {
     if (steps_)
       parts_.physics->observe([this](const auto& step) { steps_->accept(step); },
                               [this](const Sample& sample) { steps_->use(sample); });
     parts_.physics->listen(parts_.sources);
   }
+}
+
+// The images' beats begin where the simulation is now.
+void Loop::restart_images() {
+  if (parts_.physics) restored_ = parts_.physics->restored();
+  if (!parts_.sensors) return;
+  for (ImageConsumer* consumer : parts_.sensors->consumers) consumer->restart();
 }
 
 Status Loop::end(const Status& status) {
@@ -192,6 +200,7 @@ Loop::Wanted Loop::wanted_at(const FrameTime& at, double time_s) {
     request.sonars = sensors.sonars;
   }
   if (sensors.consumers.empty()) return wanted;
+  if (parts_.physics && parts_.physics->restored() != restored_) restart_images();
   wanted.cameras = request.cameras;
   wanted.sonars = request.sonars;
   request.camera_captures.assign(request.cameras.size(), request.capture);

@@ -74,7 +74,7 @@ Status ImageConsumer::wish(const std::vector<Wish>& wishes) {
                                            : std::min(wish.rate_hz, found->rate_hz));
     counts.push_back({wish.stream});
   }
-  PingSchedule schedule(rates_hz);
+  PingSchedule schedule(rates_hz, PingSchedule::Begin::kOnBeat);
   for (std::size_t i = 0; i < ids.size(); ++i)
     if (const auto before = std::ranges::find(ids_, ids[i]); before != ids_.end())
       schedule.go_on(i, schedule_, static_cast<std::size_t>(before - ids_.begin()));

@@ -50,7 +50,8 @@ class ImageConsumer {
   // their way for which nobody wishes any more are left out.
   Status wish(const std::vector<Wish>& wishes);
 
-  // Adds what is due at the request's time to the request.
+  // Adds what is due at the request's time to the request: each stream at the multiples of its
+  // period, whenever it was wished for.
   std::vector<Asked> ask(FrameRequest& request);
   // The images of a frame for which it asked.
   Status give(const scene::Scene& scene, const std::vector<Asked>& asked, FrameResult& result);
@@ -58,6 +59,8 @@ class ImageConsumer {
   Status finish() { return sink_->finish(); }
   // One for each wish.
   const std::vector<Counts>& counts() const { return counts_; }
+  // The run goes on from another time.
+  void restart() { schedule_.restart(); }
 
  private:
   ImageConsumer(std::vector<ImageStream> all, ImageSink& sink);

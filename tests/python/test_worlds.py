@@ -245,6 +245,21 @@ class Worlds(unittest.TestCase):
                 image.pixels[0, 0] += 1
                 self.assertNotEqual(image, seen)
 
+    def test_a_tick_that_ends_at_a_ping_gives_its_image(self):
+        with neritic.open(DIVE, seed=1) as world:  # ten pings a second, 240 steps
+            try:
+                world.images("rov_sonar/echoes")
+            except neritic.Error as error:
+                self.skipTest(str(error))
+            for ping in (1, 2, 3):
+                image = world.tick(24)["rov_sonar/echoes"]
+                self.assertEqual((image.sequence, round(image.stamp / world.step_s)), (ping, 24 * ping))
+            world.no_images("rov_sonar/echoes")
+            world.tick(1)
+            world.images("rov_sonar/echoes", rate=5)  # from time 0 on, whenever it is asked for
+            image = world.tick(23)["rov_sonar/echoes"]
+            self.assertEqual((image.sequence, round(image.stamp / world.step_s)), (4, 96))
+
     def test_small_things_are_refused_in_words_that_fit(self):
         with neritic.open(TALK, seed=1) as world, tempfile.TemporaryDirectory() as folder:
             with world.record(Path(folder) / "a"):
@@ -369,7 +384,7 @@ class Worlds(unittest.TestCase):
     def test_an_image_is_the_same_memory_and_outlives_its_world(self):
         world = neritic.open(MISSION, seed=1)
         world.images("rov_sonar/echoes")
-        image = world.tick(1)["rov_sonar/echoes"]
+        image = world.tick(240)["rov_sonar/echoes"]
         pixels = image.pixels
         self.assertTrue(np.shares_memory(pixels, image.pixels))
         self.assertFalse(pixels.flags.owndata)

@@ -206,7 +206,7 @@ TEST_F(ImageConsumers, WishesMayChangeWhileAFrameIsOnItsWay) {
   // Another's wish does not make the sonar ping sooner.
   EXPECT_TRUE(c.wish({{"rov_eye/depth"}, {"rov_sonar/echoes"}}).ok());
   FrameRequest soon;
-  soon.time_s = 1.05;
+  soon.time_s = 1.0 + 2.0 / 30.0;
   EXPECT_EQ(c.ask(soon).size(), 1u);
   EXPECT_TRUE(soon.sonars.empty());
 }

@@ -40,5 +40,37 @@ TEST(PingSchedule, ALateSensorPingsOnceNotForEveryPingMissed) {
   EXPECT_EQ(schedule.due(5.011).size(), 1u);
 }
 
+std::vector<int> steps_due(double rate_hz, int first, int last, int step_hz = 240) {
+  PingSchedule schedule({rate_hz}, PingSchedule::Begin::kOnBeat);
+  std::vector<int> out;
+  for (int step = first; step <= last; ++step)
+    if (!schedule.due(step * (1.0 / step_hz)).empty()) out.push_back(step);
+  return out;
+}
+
+TEST(PingSchedule, OnBeatASensorIsDueAtMultiplesOfItsPeriodWhereverItBegins) {
+  EXPECT_EQ(steps_due(10, 0, 72), (std::vector<int>{0, 24, 48, 72}));
+  EXPECT_EQ(steps_due(10, 1, 72), (std::vector<int>{24, 48, 72}));
+  EXPECT_EQ(steps_due(10, 24, 72), (std::vector<int>{24, 48, 72}));
+  EXPECT_EQ(steps_due(10, 25, 72), (std::vector<int>{48, 72}));
+  // Where no step falls on a multiple, the first one after it.
+  EXPECT_EQ(steps_due(7, 1, 140), (std::vector<int>{35, 69, 103, 138}));
+  EXPECT_EQ(steps_due(1000, 3, 6), (std::vector<int>{3, 4, 5, 6}));
+}
+
+TEST(PingSchedule, OnBeatALateFrameMovesNoLaterOne) {
+  PingSchedule schedule({10.0}, PingSchedule::Begin::kOnBeat);
+  EXPECT_EQ(schedule.due(0.0).size(), 1u);
+  EXPECT_EQ(schedule.due(0.37).size(), 1u);
+  EXPECT_TRUE(schedule.due(0.39).empty());
+  EXPECT_EQ(schedule.due(0.4).size(), 1u);
+  // Back, and forward where it says so.
+  EXPECT_TRUE(schedule.due(0.05).empty());
+  EXPECT_EQ(schedule.due(0.1).size(), 1u);
+  schedule.restart();
+  EXPECT_TRUE(schedule.due(7.03).empty());
+  EXPECT_EQ(schedule.due(7.1).size(), 1u);
+}
+
 }  // namespace
 }  // namespace neritic::testbed

@@ -1,6 +1,7 @@
 // A world of a physics that another loop turns, as of a served dive: that loop computes its images.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 
 #include "engine/core/files.hpp"
@@ -94,10 +95,41 @@ TEST_F(AttachedWorld, GetsTheImagesThatAWorldOfItsOwnLoopGets) {
   EXPECT_NE(first, last);  // it rises
 }
 
+// 20 images a second, 240 steps: one at each twelfth step, whenever it was asked for.
+TEST_F(AttachedWorld, AWorldOfItsOwnGivesTheImageOfTheStepThatEndsATick) {
+  NERITIC_ASSERT_OK(const auto own, World::open(path_));
+  const auto steps = [&] {
+    std::vector<int> out;
+    for (const auto& [stamp_ns, image] : taken(*own))
+      out.push_back(static_cast<int>(std::lround(240e-9 * static_cast<double>(stamp_ns))));
+    return out;
+  };
+  const std::uint32_t color = own->stream("rov_eye/color").value();
+  NERITIC_ASSERT_STATUS(own->want_image(color, 0.0, true));
+  NERITIC_ASSERT_STATUS(own->tick(12));
+  EXPECT_EQ(steps(), std::vector<int>{12});
+  const std::vector<std::byte> saved = own->save();
+  NERITIC_ASSERT_STATUS(own->tick(29));
+  EXPECT_EQ(steps(), (std::vector<int>{24, 36}));
+  const std::vector<std::byte> later = own->save();  // of step 41
+  // Another rate, or the same stream again, goes by time 0 too.
+  NERITIC_ASSERT_STATUS(own->drop_image(color));
+  NERITIC_ASSERT_STATUS(own->want_image(color, 10.0, true));
+  NERITIC_ASSERT_STATUS(own->tick(31));
+  EXPECT_EQ(steps(), (std::vector<int>{48, 72}));
+  NERITIC_ASSERT_STATUS(own->want_image(color, 0.0, true));
+  NERITIC_ASSERT_STATUS(own->restore(saved));
+  NERITIC_ASSERT_STATUS(own->tick(13));
+  EXPECT_EQ(steps(), std::vector<int>{24});
+  NERITIC_ASSERT_STATUS(own->restore(later));
+  NERITIC_ASSERT_STATUS(own->tick(8));
+  EXPECT_EQ(steps(), std::vector<int>{48});
+}
+
 TEST_F(AttachedWorld, GetsNoneThatItDoesNotWant) {
   const std::uint32_t color = world_->stream("rov_eye/color").value();
   NERITIC_ASSERT_STATUS(world_->want_image(color, 4.0, true));
-  EXPECT_EQ(of_loop().size(), 2u);  // at the first step and 0.25 s later
+  EXPECT_EQ(of_loop().size(), 2u);  // at 0.25 and 0.5 s
   NERITIC_ASSERT_STATUS(world_->drop_image(color));
   EXPECT_EQ(of_loop().size(), 0u);
 }
