@@ -37,6 +37,16 @@ class Examples(unittest.TestCase):
     def setUp(self):
         os.chdir(ROOT)
 
+    def test_each_is_run_in_any_folder(self):
+        names = sorted(file.stem for file in (ROOT / "tools/python/examples").glob("*.py"))
+        self.assertGreater(len(names), 4)
+        with tempfile.TemporaryDirectory() as folder:
+            os.chdir(folder)
+            for name in names:
+                self.assertTrue(Path(example(name).SCENE).is_file(), name)
+            self.assertLess(quietly(example("square").main), 0.5)
+            os.chdir(ROOT)
+
     def test_a_square_is_flown_to_each_corner(self):
         self.assertLess(quietly(example("square").main), 0.15)
 

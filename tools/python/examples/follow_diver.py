@@ -1,13 +1,16 @@
 """Keeps a vehicle 2 m beside a diver, from what the diver's instruments send: 0.2 s late, a tenth lost."""
 
 import sys
+from pathlib import Path
 
 import numpy as np
 
 import neritic
 
+SCENE = str(Path(__file__).resolve().parents[3] / "assets/scenes/dive.toml")
 
-def main(scene: str = "assets/scenes/dive.toml", seconds: float = 20.0) -> float:
+
+def main(scene: str = SCENE, seconds: float = 20.0) -> float:
     world = neritic.open(scene, seed=1)
     diver = next(a for a in world.agents.values() if isinstance(a, neritic.Diver))
     rov = next(a for a in world.agents.values() if isinstance(a, neritic.Vehicle))

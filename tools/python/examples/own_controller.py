@@ -1,6 +1,7 @@
 """Holds a depth with a controller of its own: pressure in, thruster forces out, 50 times a second."""
 
 import sys
+from pathlib import Path
 
 import numpy as np
 
@@ -8,8 +9,10 @@ import neritic
 
 WANTED_DEPTH_M = 15.0
 
+SCENE = str(Path(__file__).resolve().parents[3] / "assets/scenes/mission_measured.toml")
 
-def main(scene: str = "assets/scenes/mission_measured.toml", seconds: float = 25.0) -> float:
+
+def main(scene: str = SCENE, seconds: float = 25.0) -> float:
     world = neritic.open(scene, seed=1)
     rov = next(a for a in world.agents.values() if isinstance(a, neritic.Vehicle))
     steps = round(0.02 / world.step_s)

@@ -7,8 +7,10 @@ import numpy as np
 
 import neritic
 
+SCENE = str(Path(__file__).resolve().parents[3] / "assets/scenes/mission.toml")
 
-def main(scene: str = "assets/scenes/mission.toml", out: str = "out/sonar_dataset", images: int = 5) -> int:
+
+def main(scene: str = SCENE, out: str = "out/sonar_dataset", images: int = 5) -> int:
     world = neritic.open(scene, seed=1)
     stream = next(s.name for s in world.streams if s.kind == "echoes")
     folder = Path(out)

@@ -1,11 +1,14 @@
 """Flies a square of 2 m and says how far off each corner it was."""
 
 import sys
+from pathlib import Path
 
 import neritic
 
+SCENE = str(Path(__file__).resolve().parents[3] / "assets/scenes/mission.toml")
 
-def main(scene: str = "assets/scenes/mission.toml") -> float:
+
+def main(scene: str = SCENE) -> float:
     world = neritic.open(scene, seed=1)
     rov = world["rov"]
     x, y, z = world.truth("rov").position

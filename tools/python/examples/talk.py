@@ -2,13 +2,16 @@
 
 import struct
 import sys
+from pathlib import Path
 
 import numpy as np
 
 import neritic
 
+SCENE = str(Path(__file__).resolve().parents[3] / "assets/scenes/talk.toml")
 
-def main(scene: str = "assets/scenes/talk.toml", seconds: float = 40.0) -> dict[str, float]:
+
+def main(scene: str = SCENE, seconds: float = 40.0) -> dict[str, float]:
     world = neritic.open(scene, seed=1)
     diver, rov, buoy = world["diver"], world["rov"], world["buoy"]
     lost: list[str] = []
