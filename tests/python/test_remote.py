@@ -271,7 +271,8 @@ class Remote(unittest.TestCase):
                                         ((address, SCENE, "--as", "fish"), 2, "found 'fish'"),
                                         ((address, SCENE, "--as", "rov"), 2, "no object with a pose input"),
                                         ((address, SCENE, "--seconds", "nan"), 2, "--seconds"), ((address,), 2, "scene"),
-                                        (("tcp://127.0.0.1:1", SCENE), 1, "no answer"), ((address, SCENE, "--seconds", "0.1"), 0, "")):
+                                        (("tcp://127.0.0.1:1", SCENE), 1, "no answer"),
+                                        (("tcp://nosuch.invalid:5", SCENE), 1, "found no computer of the name nosuch.invalid"), ((address, SCENE, "--seconds", "0.1"), 0, "")):
                 found = join(*words)
                 self.assertEqual(found[0], status, found)
                 self.assertIn(line, found[1])

@@ -9,6 +9,7 @@ import math
 import mmap
 import os
 import re
+import socket
 import struct
 import sys
 import threading
@@ -126,27 +127,33 @@ class Core:
         if not isinstance(address, str) or not re.fullmatch(r"tcp://[\w.\-]+:\d{1,5}", address) or \
                 not 0 < int(address.rpartition(":")[2]) < 65536:
             raise BadInput(f"connect: found {shown(address)}; accepted: tcp://ADDRESS:PORT")
+        host = address[len("tcp://"):].rpartition(":")[0]
+        try:
+            socket.getaddrinfo(host, None, socket.AF_INET)
+        except (OSError, UnicodeError) as error:
+            raise Error(f"connect: found no computer of the name {host} "
+                        f"({getattr(error, 'strerror', None) or error})") from None
         if (key is None) != (server_key is None):
             raise BadInput("connect: found one key; accepted: key and server_key, or neither")
         self._msgpack, self._zmq, self._address, self._patience = msgpack, zmq, address, patience
         self._lock = threading.Lock()
         self._context = zmq.Context()
-        socket = self._socket = self._context.socket(zmq.DEALER)
-        socket.linger = 0
-        socket.heartbeat_ivl, socket.heartbeat_timeout = _HEARTBEAT_MS, _DEAD_MS
-        self._monitor = socket.get_monitor_socket(zmq.EVENT_HANDSHAKE_SUCCEEDED | zmq.EVENT_DISCONNECTED)
+        way = self._socket = self._context.socket(zmq.DEALER)
+        way.linger = 0
+        way.heartbeat_ivl, way.heartbeat_timeout = _HEARTBEAT_MS, _DEAD_MS
+        self._monitor = way.get_monitor_socket(zmq.EVENT_HANDSHAKE_SUCCEEDED | zmq.EVENT_DISCONNECTED)
         # Of the connection: whether it is there (None: it never was), and how often it was closed.
         self._there: Optional[bool] = None
         self._closures = 0
         # Also where close() was forgotten: a context waits for open sockets.
-        self._end = weakref.finalize(self, _end, socket, self._monitor, self._context)
+        self._end = weakref.finalize(self, _end, way, self._monitor, self._context)
         if key is not None and server_key is not None:
-            socket.curve_serverkey = _key(server_key, "public")
-            socket.curve_publickey, socket.curve_secretkey = _key(key, "public"), _key(key, "secret")
+            way.curve_serverkey = _key(server_key, "public")
+            way.curve_publickey, way.curve_secretkey = _key(key, "public"), _key(key, "secret")
         self.closed, self.recording, self._next, self._ring = False, False, 0, None
         self._stop = False  # a tick that goes on ends after its part
         try:
-            socket.connect(address)
+            way.connect(address)
             hello, _ = self._call("hello", protocol=_PROTOCOL, name=name)
         except BaseException:
             self.close()
