@@ -41,6 +41,13 @@ bool add(std::vector<std::size_t>& sensors, std::vector<Capture>& captures,
 
 }  // namespace
 
+Status check_image_rate(const std::string& stream, double sensor_hz, double rate_hz) {
+  constexpr double kRounding = 1e-9;  // of a rate that is 1 over a period
+  if (rate_hz >= 0.0 && rate_hz <= sensor_hz * (1.0 + kRounding)) return {};
+  return refusal("images of " + stream, fmt::format("{} Hz", rate_hz),
+                 fmt::format("0 (the sensor's own rate) to {} Hz, which is that rate", sensor_hz));
+}
+
 ImageConsumer::ImageConsumer(std::vector<ImageStream> all, ImageSink& sink)
     : all_(std::move(all)), schedule_({}), sink_(&sink) {}
 
@@ -63,9 +70,7 @@ Status ImageConsumer::wish(const std::vector<Wish>& wishes) {
       return refusal("images", wish.stream,
                      names.empty() ? "none: the scene has no sensor" : names);
     }
-    if (!(wish.rate_hz >= 0.0 && std::isfinite(wish.rate_hz)))
-      return refusal("images of " + wish.stream, fmt::format("{} Hz", wish.rate_hz),
-                     "0 (the sensor's own rate) or more");
+    NERITIC_TRY_STATUS(check_image_rate(wish.stream, found->rate_hz, wish.rate_hz));
     const auto id = static_cast<StreamId>(found - all_.begin());
     if (std::ranges::find(ids, id) != ids.end())
       return refusal("images", wish.stream + " twice", "each stream once");

@@ -26,11 +26,15 @@ class ImageSink {
   virtual Status finish() { return {}; }
 };
 
+// kBadInput unless images of that stream, whose sensor runs at sensor_hz, can come at rate_hz: 0,
+// which is the sensor's own rate, to the sensor's own rate.
+Status check_image_rate(const std::string& stream, double sensor_hz, double rate_hz);
+
 class ImageConsumer {
  public:
   struct Wish {
     std::string stream;    // its name
-    double rate_hz = 0.0;  // 0, or more than the sensor's: the sensor's
+    double rate_hz = 0.0;  // 0: the sensor's; at most that; counted from time 0
   };
   struct Counts {
     std::string stream;
@@ -42,8 +46,8 @@ class ImageConsumer {
     std::uint64_t beat = 0;
   };
 
-  // Borrows the sink. kBadInput for a name that no stream of the scene has, and for a rate that is
-  // none.
+  // Borrows the sink. kBadInput for a name that no stream of the scene has, and for a rate that
+  // check_image_rate() refuses.
   static Result<ImageConsumer> create(const scene::Scene& scene, const std::vector<Wish>& wishes,
                                       ImageSink& sink);
   // Other wishes from the next frame on; errors as create(), which leave it as it was. Images on
@@ -55,12 +59,12 @@ class ImageConsumer {
   std::vector<Asked> ask(FrameRequest& request);
   // The images of a frame for which it asked.
   Status give(const scene::Scene& scene, const std::vector<Asked>& asked, FrameResult& result);
+  // The run goes on from another time.
+  void restart() { schedule_.restart(); }
   bool takes() const { return sink_->takes(); }
   Status finish() { return sink_->finish(); }
   // One for each wish.
   const std::vector<Counts>& counts() const { return counts_; }
-  // The run goes on from another time.
-  void restart() { schedule_.restart(); }
 
  private:
   ImageConsumer(std::vector<ImageStream> all, ImageSink& sink);

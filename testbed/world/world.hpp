@@ -164,6 +164,7 @@ class World {
   // else only the newest one waits.
   // kBadInput: no stream of images, or more than the sensor's rate.
   Status want_image(std::uint32_t stream, double rate_hz = 0.0, bool keep = false);
+  Status check_image(std::uint32_t stream, double rate_hz) const;  // whether it would be refused
   Status drop_image(std::uint32_t stream);
   // Those that arrived since the last call, in their order, with their pixels: nothing is copied.
   std::vector<std::unique_ptr<WorldImage>> take_images();

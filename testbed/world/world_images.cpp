@@ -32,16 +32,21 @@ Status World::Parts::renew_consumer() {
   return {};
 }
 
-Status World::want_image(std::uint32_t stream, double rate_hz, bool keep) {
-  Parts& parts = *parts_;
-  NERITIC_CHECK(stream < parts.streams.size(), "stream {}", stream);
-  const StreamInfo& info = parts.streams[stream];
+Status World::check_image(std::uint32_t stream, double rate_hz) const {
+  NERITIC_CHECK(stream < parts_->streams.size(), "stream {}", stream);
+  const StreamInfo& info = parts_->streams[stream];
   if (info.sort != StreamInfo::Sort::kImage)
     return refusal("images", info.name + ", which has none", "a stream of a camera or a sonar");
   if (info.kind == "motion")
     return refusal("images",
                    info.name + ", which leads to a picture that commands have yet to decide",
                    "color, depth, normals, labels, instances, echoes, echo_labels");
+  return check_image_rate(info.name, info.rate_hz, rate_hz);
+}
+
+Status World::want_image(std::uint32_t stream, double rate_hz, bool keep) {
+  NERITIC_TRY_STATUS(check_image(stream, rate_hz));
+  Parts& parts = *parts_;
   if (!parts.attached()) NERITIC_TRY_STATUS(parts.make_session());
   const auto before = parts.wished;
   parts.wished[stream] = rate_hz;

@@ -248,6 +248,8 @@ class Remote(unittest.TestCase):
                 looks.images("rov_sonar/echoes", rate=2)
             except neritic.Error as error:
                 self.skipTest(str(error))
+            with self.assertRaisesRegex(neritic.BadInput, "images of rov_sonar/echoes: found 30 Hz; accepted: 0 .* to 10 Hz"):
+                ticks.images("rov_sonar/echoes", rate=30)
             for ping in (5, 10):  # each tick gives the image of its end
                 ticks.tick(120)
                 image = looks.observe()["rov_sonar/echoes"]

@@ -259,6 +259,9 @@ class Worlds(unittest.TestCase):
             world.images("rov_sonar/echoes", rate=5)  # from time 0 on, whenever it is asked for
             image = world.tick(23)["rov_sonar/echoes"]
             self.assertEqual((image.sequence, round(image.stamp / world.step_s)), (4, 96))
+            for rate in (10.1, -1, float("inf")):
+                with self.assertRaisesRegex(neritic.BadInput, "images of rov_sonar/echoes: found .* Hz; accepted: 0 .* to 10 Hz"):
+                    world.images("rov_sonar/echoes", rate=rate)
 
     def test_small_things_are_refused_in_words_that_fit(self):
         with neritic.open(TALK, seed=1) as world, tempfile.TemporaryDirectory() as folder:

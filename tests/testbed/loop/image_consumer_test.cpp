@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "testbed/loop/loop.hpp"
@@ -188,6 +189,20 @@ TEST_F(ImageConsumers, WishesMayChangeWhileAFrameIsOnItsWay) {
   Images images;
   ImageConsumer c = consumer({}, images);
   FrameRequest none, first, then;
+TEST_F(ImageConsumers, ARateAboveTheSensorsIsRefused) {
+  Images images;
+  for (const double rate_hz : {4.01, 1e6, -1.0, std::nan(""), HUGE_VAL}) {
+    const auto made = ImageConsumer::create(scene_, {{"rov_sonar/echoes", rate_hz}}, images);
+    ASSERT_FALSE(made.ok()) << rate_hz;
+    EXPECT_EQ(exit_status(made.error().code), 2);
+    EXPECT_EQ(made.error().message,
+              fmt::format("images of rov_sonar/echoes: found {} Hz; accepted: 0 (the sensor's own "
+                          "rate) to 4 Hz, which is that rate",
+                          rate_hz));
+  }
+  EXPECT_TRUE(ImageConsumer::create(scene_, {{"rov_sonar/echoes", 4.0}}, images).ok());
+}
+
   EXPECT_TRUE(c.ask(none).empty());
   EXPECT_TRUE(none.cameras.empty() && none.sonars.empty());
   EXPECT_TRUE(c.wish({{"rov_eye/depth"}}).ok());

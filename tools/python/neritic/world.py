@@ -176,7 +176,7 @@ class World:
 
     def images(self, *streams: str, rate: float = 0.0, keep: bool = False) -> None:
         """Asks for images of these streams from the next tick on, "eye/color" or "rov_sonar/echoes", at the multiples
-        of 1 / `rate` s, or at the sensor's own rate (0), counted from time 0: a tick that ends at such a time gives
+        of 1 / `rate` s, up to the sensor's own rate (0: that one), counted from time 0: a tick that ends at such a time gives
         that image. The first call makes a Vulkan device. keep: callbacks get every image, not the newest of each
         tick alone."""
         rate, keep = float(numbers("images: rate", rate, 1)[0]), flag("images: keep", keep)
