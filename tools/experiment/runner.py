@@ -299,7 +299,7 @@ def _work(pipe, do, program, out):
         for number in endings.SIGNALS:
             signal.signal(number, _stop)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, endings.SIGNALS)
-        os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # standard output is the results': a controller that prints is no part of them
+        os.dup2(2, 1)  # standard output is the results': a controller that prints is no part of them
         os.setpgid(0, 0)  # Ctrl-C goes to the main process alone, which ends this one
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
         while (asked := pipe.recv()) is not None:
