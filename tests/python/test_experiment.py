@@ -1,6 +1,7 @@
 """The parts of tools/experiment that need no program: orders, scores, studies, intervals, power. Exit 77: skipped."""
 import errno
 import io
+import json
 import math
 import os
 import pathlib
@@ -549,8 +550,31 @@ class Questionnaires(unittest.TestCase):
 
     def test_answers_off_the_scale_are_refused(self):
         for text in ("", "seven", "101", "-5", "7"):
-            self.assertIsNone(questionnaires.check("nasa_tlx", 0, text)[0])
-        self.assertEqual(questionnaires.check("nasa_tlx", 0, " 55 "), (55, None))
+            self.assertIsNone(questionnaires.FORMS["nasa_tlx"].check(0, text)[0])
+        self.assertEqual(questionnaires.FORMS["nasa_tlx"].check(0, " 55 "), (55, None))
+
+    def test_weights_of_workload_are_how_often_a_scale_was_chosen(self):
+        form = questionnaires.FORMS["nasa_tlx_weighted"]
+        self.assertEqual(len(form.items), 6 + 15)
+        # The first of each pair: weights 5, 4, 3, 2, 1, 0, so (5 10 + 4 20 + 3 30 + 2 40 + 50) / 15.
+        self.assertEqual(form.scores([10, 20, 30, 40, 50, 60] + [1] * 15), {"tlx_raw": 35, "tlx_weighted": 350 / 15})
+        self.assertEqual(form.scores([10, 20, 30, 40, 50, 60] + [2] * 15)["tlx_weighted"], (20 + 60 + 120 + 200 + 300) / 15)
+        self.assertEqual(form.items[6][0], "which mattered more: mental demand (1) or physical demand (2)?")
+        self.assertIsNone(form.check(6, "0")[0])
+
+    def test_a_declined_answer_leaves_no_score(self):
+        self.assertIsNone(questionnaires.FORMS["ssq"].scores([0] * 15 + [None]))
+
+    def test_a_plans_own_questionnaire_is_checked_and_scored(self):
+        made = questionnaires.own("q", {"calm": {"items": ["I was calm", "I was afraid", "I knew where I was"], "most": 5, "reversed": [2]}})["calm"]
+        self.assertEqual(made.scores([5, 1, 2]), {"calm_mean": 4.0})
+        for key, value in (("items", []), ("items", "calm"), ("items", [1]), ("most", 1), ("most", "x"), ("step", 4), ("reversed", [4]), ("reversed", 1),
+                           ("title", 3), ("itmes", [])):
+            with self.assertRaisesRegex(scenario.Refused, r"^q\.calm.*found .*; accepted: "):
+                questionnaires.own("q", {"calm": {"items": ["a", "b", "c"], key: value}})
+        for name in ("ssq", "a/b", "../a"):
+            with self.assertRaisesRegex(scenario.Refused, "accepted: a new word"):
+                questionnaires.own("q", {name: {"items": ["a"]}})
 
 
 class PersonsSide(unittest.TestCase):
@@ -668,11 +692,11 @@ class Study(unittest.TestCase):
             self.assertIn("nothing is kept", self.study("enrol", answers="no\n")[1])
             self.assertIn("P01. Blocks: a, b", self.study("enrol", answers="yes\n")[1])
             self.assertIn("P02. Blocks: b, a", self.study("enrol", answers="yes\n")[1])
-            block = "\n50\n55\n60\n101\n10\n0\n100\n"  # 101 is refused and asked again
-            ssq = "3\n" * 16
+            block = "\n50\n55\n60\n101\n10\n0\n100\n\n"  # 101 is refused and asked again; Enter ends the questionnaire
+            ssq = "3\n" * 16 + "\n"
             self.assertEqual(self.study("run", "P01", answers=block + block + ssq)[0], 0)
             self.assertEqual(self.study("run", "P02", answers="\n50\n55\n")[0], 1)
-            self.assertEqual(self.study("run", "P02", answers="60\n10\n0\n100\n" + block + ssq)[0], 0)
+            self.assertEqual(self.study("run", "P02", answers="60\n10\n0\n100\n\n" + block + ssq)[0], 0)
             table = self.study("table")[1]
             for row in ("P01,a,1,45.8333", "P02,b,1,45.8333", "P01,after,,,200.34,159.18,292.32,235.62"):
                 self.assertIn(row, table)
@@ -692,6 +716,31 @@ class Study(unittest.TestCase):
             self.assertEqual(os.listdir(os.path.join(self.folder, "participants")), ["P02"])
             # The next one takes the order of the one who left, under a new name.
             self.assertIn("P03. Blocks: a, b", self.study("enrol", answers="yes\n")[1])
+
+    def test_an_answer_can_be_corrected_and_declined(self):
+        with tempfile.TemporaryDirectory() as self.scratch:
+            self.folder = os.path.join(self.scratch, "study")
+            own = '[questionnaires.calm]\nitems = ["I was calm", "I was afraid"]\nmost = 5\nreversed = [2]\n'
+            self.write("plan.toml", self.PLAN.replace('after = ["ssq"]', 'after = ["calm", "ssq"]') + own)
+            self.assertEqual(self.study("begin", "--plan", os.path.join(self.scratch, "plan.toml"))[0], 0)
+            self.study("enrol", answers="yes\n")
+            for words, told in ((("mood",), "found mood"), ((), "found no questionnaire")):
+                status, text = self.study("ask", "P01", *words)
+                self.assertEqual((status, text.count("\n")), (2, 1), text)
+                self.assertRegex(text, f"{told}; accepted: nasa_tlx, .*, calm")
+            first = "\nback\n50\n55\nback\n60\n0\n0\n0\n100\nyes\nback\n10\n\n"  # 50 60 0 0 0 10: the second and the last are corrected
+            second = "\n50\nskip\n0\n0\n0\n10\n\n"
+            status, text = self.study("run", "P01", answers=first + second + "4\n2\n\n" + "0\n" * 16 + "\n")
+            self.assertEqual(status, 0, text)
+            for words in ("this is the first question", 'found "yes"; accepted: Enter, back'):
+                self.assertIn(words, text)
+            answers = [json.loads(self.read(f"participants/P01/{block}_nasa_tlx.json")) for block in "ab"]
+            self.assertEqual([a["answers"] for a in answers], [[50, 60, 0, 0, 0, 10], [50, None, 0, 0, 0, 10]])
+            table = self.study("table")[1]
+            self.assertIn("P01,a,1,20.0", table)
+            self.assertNotIn("P01,b", table)  # a score of five scales would be another one
+            self.assertRegex(table, "calm_mean")
+            self.assertRegex(table, r"P01,after,,,.*4\.0")  # (4 + (6 - 2)) / 2
 
     def test_markers_reach_the_blocks_program_while_it_runs(self):
         with tempfile.TemporaryDirectory() as self.scratch:
@@ -717,7 +766,7 @@ json.dump(heard, open(out, "w"))
             self.write("plan.toml", self.PLAN + 'command = ["dive", "{markers}", "{folder}/heard"]\n')
             self.study("begin", "--plan", os.path.join(self.scratch, "plan.toml"))
             self.study("enrol", answers="yes\n")
-            self.write("answers", "\n" + "50\n" * 6 + "\n")
+            self.write("answers", "\n" + "50\n" * 6 + "\n\n")
             subprocess.run([sys.executable, "-B", os.path.join(TOOLS, "study.py"), "--program", program, "run", self.folder, "P01",
                             "--answers", os.path.join(self.scratch, "answers")], capture_output=True, timeout=60)
             self.assertEqual(self.read("participants/P01/heard"), '["block begins", "seen"]')
@@ -743,7 +792,7 @@ open(os.path.join(sys.argv[2], "whole"), "w").close()
         self.write("plan.toml", self.PLAN + 'command = ["dive", "{folder}"]\n')
         self.study("begin", "--plan", os.path.join(self.scratch, "plan.toml"))
         self.study("enrol", answers="yes\n")
-        self.write("answers", "\n" + "50\n" * 6 + "\n")
+        self.write("answers", "\n" + "50\n" * 6 + "\n\n")
         run = subprocess.Popen([sys.executable, "-B", os.path.join(TOOLS, "study.py"), "--program", program, "run", self.folder, "P01",
                                 "--answers", os.path.join(self.scratch, "answers")], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         until = time.monotonic() + 30
@@ -851,7 +900,7 @@ open(os.path.join(sys.argv[2], "whole"), "w").close()
         with tempfile.TemporaryDirectory() as self.scratch:
             self.folder = os.path.join(self.scratch, "study")
             for words, told in ((("beginn",), "beginn"), (("run",), "no participant"), (("run", "P01"), "no study"), (("begin",), "found no --plan"),
-                                (("begin", "--plan", "none.toml"), "none.toml"), (("ask", "P01", "mood"), "mood"), (("ask", "P01"), "no questionnaire")):
+                                (("begin", "--plan", "none.toml"), "none.toml"), (("ask", "P01", "mood"), "no study")):
                 status, text = self.study(*words)
                 self.assertEqual((status, text.count("\n")), (2, 1), text)
                 self.assertIn(told, text)

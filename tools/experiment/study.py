@@ -45,7 +45,8 @@ def read_plan(path):
         raise Refused(f"{path}: found a file that cannot be read ({error.strerror}); accepted: a study's plan in TOML") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise Refused(f"{path}: found no TOML: {error}") from None
-    check_keys(path, plan, ["study", "blocks"])
+    check_keys(path, plan, ["study", "blocks", "questionnaires"])
+    forms = _forms_of(path, plan)
     study = plan.get("study", {})
     check_keys(f"{path}: study", study, ["title", "consent", "before", "after_block", "after"])
     for key in ("title", "consent"):
@@ -53,10 +54,10 @@ def read_plan(path):
             raise Refused(f"{path}: study.{key}: found {study.get(key)!r}; accepted: text")
     for key in ("before", "after_block", "after"):
         if not isinstance(study.get(key, []), list):
-            raise Refused(f"{path}: study.{key}: found {study[key]!r}; accepted: a list of {', '.join(questionnaires.FORMS)}")
+            raise Refused(f"{path}: study.{key}: found {study[key]!r}; accepted: a list of {', '.join(forms)}")
         for name in study.get(key, []):
-            if not isinstance(name, str) or name not in questionnaires.FORMS:
-                raise Refused(f"{path}: study.{key}: found {name!r}; accepted: {', '.join(questionnaires.FORMS)}")
+            if not isinstance(name, str) or name not in forms:
+                raise Refused(f"{path}: study.{key}: found {name!r}; accepted: {', '.join(forms)}")
     blocks = plan.get("blocks", [])
     if not isinstance(blocks, list) or not 1 <= len(blocks) <= 20:
         raise Refused(f"{path}: blocks: found {len(blocks) if isinstance(blocks, list) else blocks!r}; accepted: 1 to 20")
@@ -74,6 +75,11 @@ def read_plan(path):
     return plan
 
 
+def _forms_of(path, plan):
+    """The questionnaires that a plan may name: the published ones and its own."""
+    return questionnaires.FORMS | questionnaires.own(f"{path}: questionnaires", plan.get("questionnaires", {}))
+
+
 class Study:
     def __init__(self, folder):
         self.folder, path = folder, os.path.join(folder, "study.json")
@@ -85,6 +91,7 @@ class Study:
         except ValueError:
             raise Refused(f"{path}: found no JSON; accepted: a file that `neritic study` wrote") from None
         self.plan = self.data["plan"]
+        self.forms = _forms_of(path, self.plan)
         self.names = [b["name"] for b in self.plan["blocks"]]
 
     def save(self):
@@ -225,30 +232,53 @@ class Screen:
 
 
 def questionnaire(study, who, name, when, screen):
-    """Asks what is not yet answered: a questionnaire that was interrupted goes on where it stopped."""
-    place = study.place(who)
+    """Asks what is not yet answered: a questionnaire that was interrupted goes on where it stopped. "back" asks the question before
+    again, "skip" declines an answer, which is kept as null; a questionnaire with one has no score."""
+    place, form = study.place(who), study.forms[name]
     path = os.path.join(place, f"{when}_{name}.json")
-    title, items, low, high, _, ends, score = questionnaires.FORMS[name]
     given = {"questionnaire": name, "when": when, "answers": []}
     if os.path.exists(path):
         with open(path, encoding="utf-8") as file:
             given = json.load(file)
-    if len(given["answers"]) == len(items):
+    if given.get("ended") or "scores" in given:
         return given
-    screen.say(f"\n{title}: {len(items)} questions, {ends}.")
+    screen.say(f"\n{form.title}: {len(form.items)} questions, {form.ends}. In place of a number: back (the question before), skip (no answer).")
     note(place, marker=f"questionnaire {name} begins", when=when)
-    for i in range(len(given["answers"]), len(items)):
-        while True:
-            value, wrong = questionnaires.check(name, i, screen.ask(f"  {i + 1}/{len(items)} {items[i]} [{low}-{high}]:"))
-            if wrong is None:
-                break
-            screen.say(f"    {wrong}")
-        given["answers"].append(value)
-        if len(given["answers"]) == len(items):
-            given["scores"] = score(given["answers"])
+    while not given.get("ended"):
+        _ask_next(form, given, screen)
         write_file(path, json.dumps(given, indent=2) + "\n")
     note(place, marker=f"questionnaire {name} ends", when=when)
     return given
+
+
+def _ask_next(form, given, screen):
+    """One question, or whether all answers shall stay."""
+    answers, count = given["answers"], len(form.items)
+    i, value = len(answers), None
+    if i < count:
+        text, low, high, _ = form.items[i]
+        typed = screen.ask(f"  {i + 1}/{count} {text} [{low}-{high}]:")
+    else:
+        typed = screen.ask("  Press Enter to end these questions, or type back:")
+    if typed.lower() == "back":
+        if answers:
+            answers.pop()
+        else:
+            screen.say("    this is the first question")
+    elif i < count:
+        if typed.lower() != "skip":
+            value, wrong = form.check(i, typed)
+            if wrong is not None:
+                screen.say(f"    {wrong}")
+                return
+        answers.append(value)
+    elif typed:
+        screen.say(f"    found \"{typed}\"; accepted: Enter, back")
+    else:
+        given["ended"] = True
+        scores = form.scores(answers)
+        if scores is not None:
+            given["scores"] = scores
 
 
 def begin(asked):
@@ -396,7 +426,7 @@ def scores(study):
         order = [study.names[i] for i in study.data["orders"][about["order"]]]
         for when in ["before", *order, "after"]:
             row = {"participant": who, "block": when, "turn": order.index(when) + 1 if when in order else ""}
-            for name in questionnaires.FORMS:
+            for name in study.forms:
                 path = os.path.join(place, f"{when}_{name}.json")
                 if os.path.exists(path):
                     with open(path, encoding="utf-8") as file:
@@ -446,10 +476,11 @@ def main():
         elif asked.what == "run":
             run(asked, screen)
         elif asked.what == "ask":
-            if asked.text not in questionnaires.FORMS:
-                raise Refused(f"study ask: found {asked.text or 'no questionnaire'}; accepted: {', '.join(questionnaires.FORMS)}")
+            study = Study(asked.folder)
+            if asked.text not in study.forms:
+                raise Refused(f"study ask: found {asked.text or 'no questionnaire'}; accepted: {', '.join(study.forms)}")
             with Present(asked.folder, asked.who):
-                questionnaire(Study(asked.folder), asked.who, asked.text, time.strftime("asked_%Y%m%d_%H%M%S"), screen)
+                questionnaire(study, asked.who, asked.text, time.strftime("asked_%Y%m%d_%H%M%S"), screen)
         elif asked.what == "mark":
             with Present(asked.folder, asked.who) as present:
                 note(present.place, marker=asked.text or "mark")
