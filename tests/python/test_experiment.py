@@ -809,6 +809,9 @@ open(os.path.join(sys.argv[2], "whole"), "w").close()
             self.assertEqual((status, text.count("\n")), (2, 1), text)
             self.assertIn("nothing is erased", text)
             self.assertTrue(os.path.exists(os.path.join(self.folder, place, "begun")))
+            status, text = self.study("run", "P01", answers="\n")
+            self.assertEqual((status, text.count("\n")), (2, 1), text)
+            self.assertIn("found another `neritic study run` of P01", text)
             self.assertEqual(self.study("mark", "P01", "still here")[0], 0)  # it was refused, and the participant takes part
             run.send_signal(signal.SIGTERM)  # ends the block first, which closes what it wrote
             self.assertEqual(run.wait(30), 143)

@@ -322,7 +322,11 @@ def enrol(asked, screen):
 
 
 def run(asked, screen):
-    with Present(asked.folder, asked.who) as present:
+    with Present(asked.folder, asked.who) as present, open(os.path.join(present.place, "run.lock"), "w", encoding="ascii") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise Refused(f"{asked.folder}: found another `neritic study run` of {asked.who}, which goes on; accepted: one at a time") from None
         _run(asked, screen, present)
 
 
