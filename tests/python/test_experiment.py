@@ -527,6 +527,122 @@ class Measures(unittest.TestCase):
         self.assertEqual(sorted(measures["absent"]), ["by_zero", "large", "late", "none", "root"])
 
 
+class Tasks(unittest.TestCase):
+    """A task's file and its controller, without a program."""
+
+    def made(self, task="", stages='[[stages]]\nname = "near"\nuntil = "time > 1"\n', player="", act="return None", sets=()):
+        """The checked task of a scenario with these lines."""
+        import task as kind
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        self.folder = folder
+        for name, text in (("scene.toml", '[[objects]]\nname = "rov"\n[[objects]]\nname = "diver"\n'),
+                           ("act.py", f"class Controller:\n    def __init__(self, world, settings, seed):\n        pass\n\n    def act(self, obs, stage):\n        {act}\n"),
+                           ("play.py", f"class Player:\n    def __init__(self, world, settings, seed):\n        pass\n\n    def act(self, obs, stage, told):\n        {player or 'pass'}\n"),
+                           ("own.toml", '[experiment]\nkind = "task"\n[task]\nscene = "scene.toml"\ncontroller = "act.py"\n'
+                                        + ('player = "play.py"\n' if player else "") + task + "\n" + stages)):
+            with open(os.path.join(folder, name), "w") as file:
+                file.write(text)
+        return scenario.Scenario(os.path.join(folder, "own.toml"), {"task": kind.Task}, sets=sets)
+
+    def refused(self, words, **more):
+        with self.assertRaisesRegex(scenario.Refused, words) as caught:
+            self.made(**more)
+        self.assertNotIn("\n", str(caught.exception))
+
+    def run_of(self, plan, bpm=10.0):
+        """Its measures in a world that has a diver's body alone."""
+        world = SimpleNamespace(time=0.0, step_s=0.05, agents={"rov": None, "diver": None}, close=lambda: None)
+        seen = {"diver/motion": SimpleNamespace(breath_bpm=bpm, heart_bpm=6 * bpm)}
+
+        def tick(steps):
+            world.time += steps * world.step_s
+            return seen
+        world.observe, world.tick = lambda: seen, tick
+        world.truth = lambda name: SimpleNamespace(position=np.array([2.0 * (name == "rov"), 0.0, -10.0]))
+        tools = SimpleNamespace(python=lambda: SimpleNamespace(open=lambda *_, **__: world))
+        return plan.kind.run(plan.settings, 1, tools)[0]
+
+    def test_the_time_of_a_run_and_of_its_stages_counts_the_held_seconds(self):
+        stages = "".join(f'[[stages]]\nname = "{n}"\nuntil = "stage_time > 0.99"\nheld_s = {held}\n' for n, held in (("a", 2.0), ("b", 0.5)))
+        measures = self.run_of(self.made(stages=stages))
+        self.assertEqual([round(measures[k], 6) for k in ("a_s", "b_s", "time_s")], [3.0, 1.5, 4.5])
+
+    def test_no_name_stands_for_two_things(self):
+        stage = '[[stages]]\nname = "{}"\nuntil = "time > 1"\n'
+        measure = stage.format("near") + '[[measures]]\nname = "{}"\nof = "time"\n'
+        setting = "[task.settings]\n{} = {{ default = 1 }}\n"
+        self.refused(r'stages\[1\]\.name: found "near", but near_s is how long a stage took already; accepted: another', stages=2 * stage.format("near"))
+        for name in ("time", "wall", "processor"):
+            self.refused(rf'stages\[0\]\.name: found "{name}", but {name}_s is ', stages=stage.format(name))
+        for name in ("failure", "absent", "t", "stage", "success", "time_s", "near_s", "seed", "wall_s", "controller"):
+            self.refused(rf'measures\[0\]\.name: found "{name}", but {name} is ', stages=measure.format(name))
+        for name in ("time", "stage_time", "controller", "run_limit_s", "seed"):
+            self.refused(rf'task\.settings\.{name}: found "{name}", but', task=setting.format(name))
+        self.refused(r'measures\[0\]\.name: found "far", but far is a setting', task=setting.format("far"), stages=measure.format("far"))
+        for told in ('"time"', '"far"', '"a", "a"'):
+            self.refused("task.tells: found ", task=f"tells = [{told}]\n" + setting.format("far"), player="return {}")
+        self.refused('task.says: found "a", but a is a number of the player', task='tells = ["a"]\nsays = ["a"]', player="return {}")
+        self.refused(r"task\.numbers\.far: found", task=setting.format("far") + '[task.numbers]\nfar = "time"')
+        self.refused('task.places.rov: found "rov", but rov is a participant already',
+                     task='participants = ["rov"]\n[task.places]\nrov = [0, 0, 0]')
+        self.refused("task.participants: found", task='participants = ["rov", "rov"]')
+        for bad in ("two words", "and", "2nd", ""):
+            self.refused(rf'found "{bad}"; accepted: letters', stages=stage.format("near") + f'[[measures]]\nname = "{bad}"\nof = "time"\n')
+
+    def test_a_scenario_computes_what_it_judges_by_from_the_divers_body(self):
+        judged = """participants = ["rov", "diver"]
+[task.numbers]
+share = "max(0, min(1, (breath(diver) - 10) / 10))"
+wanted_m = "3 - share - 0.01 * heart(diver)"
+"""
+        stages = '[[stages]]\nname = "near"\nuntil = "time > 1"\n[[measures]]\nname = "off_m"\nof = "distance(rov, diver) - wanted_m"\nstatistic = "max"\n'
+        for bpm, wanted in ((5.0, 2.7), (15.0, 1.6), (30.0, 0.2)):
+            self.assertAlmostEqual(self.run_of(self.made(judged, stages), bpm)["off_m"], 2.0 - wanted, 9)
+        absent = self.run_of(self.made(judged, stages), math.nan)
+        self.assertNotIn("off_m", absent)
+        self.assertIn("no number at any moment", absent["absent"]["off_m"])
+        self.refused("accepted: share, stage_time, time", task='[task.numbers]\nshare = "time"\nbad = "later"\nlater = "time"')
+        self.refused(r"found min of 1 in .*; accepted: two numbers", task='[task.numbers]\nshare = "min(time)"')
+
+    def test_no_controller_tells_what_it_is_judged_by(self):
+        self.refused("task.tells: found \\['wanted_m'\\] without a player; accepted: .* a controller does not judge itself", task='tells = ["wanted_m"]')
+        self.refused("task.says: found", task='says = ["warn"]')
+        both = {"task": 'tells = ["far"]\nsays = ["warn"]', "player": 'return {"far": told.get("warn", 0.0)}'}
+        self.refused('found "warn" in "warn > 1"', stages='[[stages]]\nname = "near"\nuntil = "warn > 1"\n', **both)
+        stages = '[[stages]]\nname = "near"\nuntil = "time > 1"\n[[measures]]\nname = "most"\nof = "far"\nstatistic = "max"\n'
+        self.assertEqual(self.run_of(self.made(stages=stages, act='return {"warn": 7}', **both))["most"], 7.0)
+        for act, words in (('return {"far": 0.0}', 'act.py: act told "far"; accepted: warn'), ("return [1]", "act.py: act returned list; accepted: a dict"),
+                           ('return {"warn": "x"}', "act.py: act told warn 'x'; accepted: a number")):
+            with self.assertRaisesRegex(scenario.Failed, words):
+                self.run_of(self.made(stages=stages, act=act, **both))
+        with self.assertRaisesRegex(scenario.Failed, 'play.py: act told "close"; accepted: far'):
+            self.run_of(self.made(stages=stages, task='tells = ["far"]', player='return {"close": 1}'))
+
+    def test_another_controller_is_named_where_it_tells_what_nobody_asked(self):
+        self.made()
+        mine = os.path.join(self.folder, "mine.py")
+        with open(mine, "w") as file:
+            file.write("class Controller:\n    def __init__(self, *_):\n        pass\n    def act(self, *_):\n        return {'foo': 1}\n")
+        with self.assertRaisesRegex(scenario.Failed, 'mine.py: act told "foo"; accepted: nothing'):
+            self.run_of(self.made(sets=[f"controller={mine}"]))
+
+    def test_a_controller_that_is_none_is_refused_before_it_runs(self):
+        self.made()
+        mine = os.path.join(self.folder, "mine.py")
+        for text, words in (("class Controller(:\n", r"mine.py: found no Python \(.*line 1\); accepted: a class Controller"),
+                            ("x = 1\n", "mine.py: found no class Controller; accepted: a class Controller with act"),
+                            ("class Controller:\n    pass\n", "without act"), ("\0", "found no Python")):
+            with open(mine, "w") as file:
+                file.write(text)
+            self.refused(words, sets=[f"controller={mine}"])
+        for text in ("from other import Controller\n", "from other import Mine as Controller\n", "import other\nController = other.Mine\n",
+                     "from other import *\n", "import other\nclass Controller(other.Mine):\n    pass\n", "raise SystemExit\ndef Controller(*_): pass\n"):
+            with open(mine, "w") as file:
+                file.write(text)
+            self.made(sets=[f"controller={mine}"])
+
+
 class Questionnaires(unittest.TestCase):
     def test_each_block_stands_once_at_each_place_and_after_each_other(self):
         for n in range(1, 9):

@@ -1,7 +1,7 @@
 """Formulas of scenarios: triggers, measures and stopping rules as text, as in "distance(rov, diver) < 2 and time > 5".
 
-Numbers, comparisons, and / or / not, + - * / **, and the functions of SIGNALS on participants' names. Nothing else is
-evaluated. World axes: east, north, up.
+Numbers, comparisons, and / or / not, + - * / **, min and max of numbers, and the functions of SIGNALS on participants' names.
+Nothing else is evaluated. World axes: east, north, up.
 """
 import ast
 import math
@@ -24,6 +24,14 @@ def _power(a, b):
     except (ZeroDivisionError, OverflowError):
         return math.nan
     return math.nan if isinstance(value, complex) else value
+
+
+def _of_numbers(choose):
+    """min or max; NaN where one of them is none."""
+    return lambda values: math.nan if any(math.isnan(v) for v in values) else float(choose(values))
+
+
+_NUMBERS = {"min": _of_numbers(min), "max": _of_numbers(max)}
 
 
 def _facing(m, a, b):
@@ -56,6 +64,8 @@ SIGNALS = {
     "facing": (_facing, 2, "degrees between the first's way ahead and the second"),
     "along": (_along, 3, "projection of the first on the line from the second to the third, a share of it"),
     "beside": (_beside, 3, "m from the first to the line through the second and the third"),
+    "breath": (lambda m, a: m.body(a, "breath_bpm"), 1, "true breaths a minute of a diver with a human's body"),
+    "heart": (lambda m, a: m.body(a, "heart_bpm"), 1, "true beats of its heart a minute"),
     "touched": (lambda m, a: float(m.truth(a).touched_steps), 1, "steps in which it touched something"),
 }
 
@@ -97,8 +107,14 @@ class Formula:
             for value in (node.left, *node.comparators):
                 self._check(value, names, numbers)
         elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
+            if node.func.id in _NUMBERS:
+                if len(node.args) < 2:
+                    self._refuse(f"{node.func.id} of {len(node.args)}", "two numbers or more")
+                for value in node.args:
+                    self._check(value, names, numbers)
+                return
             if node.func.id not in SIGNALS:
-                self._refuse(f"\"{node.func.id}\"", ", ".join(SIGNALS))
+                self._refuse(f"\"{node.func.id}\"", ", ".join([*SIGNALS, *_NUMBERS]))
             count = SIGNALS[node.func.id][1]
             told = [a.id for a in node.args if isinstance(a, ast.Name)]
             if len(told) != len(node.args) or len(told) != count or not set(told) <= names:
@@ -137,4 +153,6 @@ class Formula:
                     return False
                 left = right
             return True
+        if node.func.id in _NUMBERS:
+            return _NUMBERS[node.func.id]([float(self._value(a, m)) for a in node.args])
         return SIGNALS[node.func.id][0](m, *(a.id for a in node.args))

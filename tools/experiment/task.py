@@ -2,13 +2,14 @@
 README.md lists its keys.
 
 The controller is a Python file with a class Controller: __init__(self, world, settings, seed) and
-act(self, observations, stage), called control_hz times a second. Formulas may name the numbers of the dict that act returns.
-A player, a class Player of the same form, plays people and props by rules, so that controllers can be compared: its act has
-a third argument, what the controller told last, and is called first; the controller has what it tells as self.told, and the
-player itself as self.player.
+act(self, observations, stage), called control_hz times a second. It returns a dict of the numbers that it says to the player, or
+None. A player, a class Player of the same form, plays people and props by rules and judges, so that controllers can be compared:
+its act has a third argument, what the controller said last, and is called first; formulas may name the numbers that it returns.
+The controller has these as self.told, and the player itself as self.player.
 """
 import importlib.util
 import math
+import numbers
 import os
 import sys
 
@@ -17,14 +18,15 @@ import numpy as np
 import files_read
 import task_figures
 from scenario import Failed, Refused
-from task_file import TaskFile
+from task_file import TaskFile, check_class
 
 
 class Moment:
     """The inputs of formulas: the truth of one instant, and numbers by name."""
 
-    def __init__(self, world, fixed, numbers):
-        self._world, self._fixed, self._numbers, self._truths = world, fixed, numbers, {}
+    def __init__(self, world, fixed, numbers, seen=None):
+        """seen: the observations of this instant, which have the state of a diver's body."""
+        self._world, self._fixed, self._numbers, self._seen, self._truths = world, fixed, dict(numbers), seen or {}, {}
 
     def truth(self, name):
         if name not in self._truths:
@@ -34,9 +36,17 @@ class Moment:
     def place(self, name):
         return self._fixed[name] if name in self._fixed else self.truth(name).position
 
+    def body(self, name, field):
+        """A number of a diver's body; NaN where the scene has none."""
+        motion = self._seen.get(f"{name}/motion")
+        return float(getattr(motion, field, math.nan))
+
     def number(self, name):
         value = self._numbers.get(name, math.nan)
         return float(value)
+
+    def define(self, name, formula):
+        self._numbers[name] = formula.value(self)
 
 
 class _Course:
@@ -68,7 +78,7 @@ class _Course:
         if now["until"].value(moment):
             self.held_from = time if self.held_from is None else self.held_from
             if time - self.held_from >= now["held_s"] - 1e-9:
-                self.ends[f"{now['name']}_s"] = self.held_from - self.begun
+                self.ends[f"{now['name']}_s"] = time - self.begun
                 self.stage, self.begun, self.held_from = self.stage + 1, time, None
                 return
         else:
@@ -82,7 +92,7 @@ class _Course:
         absent = {}
         out = {"success": self.failure is None, **self.ends, "failure": self.failure, "absent": absent}
         if self.failure is None:
-            out["time_s"] = self.begun if not self.ends else sum(self.ends.values())
+            out["time_s"] = self.begun  # the end of the last stage
         for m in self.task.measures:
             rows = self.rows[m["name"]]
             value = _statistic(m["statistic"], np.array(rows), step_s)
@@ -104,9 +114,17 @@ class Task(TaskFile):
         return files_read.of_scene(self.scene) + [f for module in (self.player, own) if module for f in files_read.of_module(module)]
 
     def check(self, settings):
-        """Refuses a controller that is not there, before anything runs."""
-        if settings["controller"] not in ("baseline", "null") and not os.path.isfile(settings["controller"]):
-            raise Refused(f"controller: found no file {settings['controller']}; accepted: baseline, null, or a controller's .py")
+        """Refuses a controller that is not there or is none, before anything runs."""
+        path = self._controller_of(settings)
+        if path is not None and not os.path.isfile(path):
+            raise Refused(f"controller: found no file {path}; accepted: baseline, null, or a controller's .py")
+        for file, name in ((self.player, "Player"), (path, "Controller")):
+            if file:
+                check_class(file, name)
+
+    def _controller_of(self, settings):
+        """Its file; None is the null robot."""
+        return {"baseline": self.controller, "null": None}.get(settings["controller"], settings["controller"])
 
     def run(self, settings, seed, tools):
         world = tools.python().open(self.scene, seed=seed)
@@ -114,30 +132,25 @@ class Task(TaskFile):
         if missing:
             raise Failed(f"{self.scene}: found no participant {missing[0]}; accepted: {', '.join(world.agents)}")
         player = _controller(self.player, "Player")(world, settings, seed) if self.player else None
-        path = {"baseline": self.controller, "null": None}.get(settings["controller"], settings["controller"])
+        path = self._controller_of(settings)
         controller = _controller(path)(world, settings, seed) if path else Null(world, settings, seed)
         controller.player = player
         fixed = {k: np.array(v) for k, v in self.places.items()}
         every = max(1, round(1.0 / (self.control_hz * world.step_s)))
-        course, observations, told = _Course(self), world.observe(), {}
+        course, observations, told, said = _Course(self), world.observe(), {}, {}
         while world.time < self.seconds - 1e-9 and not course.is_over():
-            played = player.act(observations, course.name(), told) or {} if player else {}
-            controller.told = played
-            told = {**played, **(controller.act(observations, course.name()) or {})}
-            self._check_told(told)
+            told = _told(self.player, player.act(observations, course.name(), said), self.tells) if player else {}
+            controller.told = dict(told)
+            said = _told(path, controller.act(observations, course.name()), self.says)
             observations = world.tick(every)
-            numbers = {**settings, **told, "time": world.time, "stage_time": world.time - course.begun}
-            course.see(Moment(world, fixed, numbers), world.time)
+            moment = Moment(world, fixed, {**settings, **told, "time": world.time, "stage_time": world.time - course.begun}, observations)
+            for name, formula in self.numbers:
+                moment.define(name, formula)
+            course.see(moment, world.time)
         measures = course.measures(every * world.step_s)
         world.close()
         keep = slice(None, None, max(1, len(course.series["t"]) // 400))
         return measures, {k: v[keep] for k, v in course.series.items()}
-
-    def _check_told(self, told):
-        unknown = [k for k in told if k not in self.tells]
-        if unknown:
-            raise Failed(f"{self.path if self.player else self.controller}: act told \"{unknown[0]}\"; accepted: "
-                         f"{', '.join(self.tells) or 'nothing'}")
 
     def figures(self, scenario, results, style):
         return task_figures.figures(self, scenario, results, style)
@@ -151,6 +164,20 @@ class Null:
 
     def act(self, observations, stage):
         return {}
+
+
+def _told(path, told, accepted):
+    """What act of this file returned, checked: a dict of numbers of these names; None is an empty one."""
+    if told is None:
+        return {}
+    if not isinstance(told, dict):
+        raise Failed(f"{path}: act returned {type(told).__name__}; accepted: a dict of numbers, or None")
+    for name, value in told.items():
+        if name not in accepted:
+            raise Failed(f"{path}: act told \"{name}\"; accepted: {', '.join(accepted) or 'nothing: the scenario judges by its own formulas'}")
+        if not isinstance(value, (numbers.Real, np.bool_)):
+            raise Failed(f"{path}: act told {name} {value!r}; accepted: a number")
+    return dict(told)
 
 
 def _controller(path, name="Controller"):

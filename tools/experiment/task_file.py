@@ -1,4 +1,6 @@
 """A task's tables in a scenario file, checked: README.md lists the keys. Plain data; it goes to the worker processes."""
+import ast
+import keyword
 import os
 
 from formulas import Formula
@@ -6,6 +8,26 @@ from scenario import Refused, Setting, check_keys, _number, _word_of
 
 STATISTICS = ("last", "first", "mean", "rms", "min", "max", "ever", "share", "duration")
 MOST_SECONDS = 86400.0
+# Numbers and results that every task has, under these names.
+OWN_NUMBERS = {"time": "the time", "stage_time": "the time in the stage", "controller": "a setting of every task",
+               "run_limit_s": "a setting of every experiment"}
+OWN_RESULTS = {**OWN_NUMBERS, "t": "the time in a run's series", "stage": "the stage in a run's series", "success": "a measure of every task",
+               "time_s": "a measure of every task", **dict.fromkeys(("failure", "absent", "seed", "wall_s", "processor_s"), "a column of the results")}
+
+
+class _Names:
+    """What each name of one kind stands for: none stands for two things."""
+
+    def __init__(self, own=()):
+        self.uses = dict(own)
+
+    def add(self, where, name, use, shown=None):
+        """shown: the word of the file of which the name is made."""
+        if not name.isidentifier() or keyword.iskeyword(name):
+            raise Refused(f"{where}: found \"{shown or name}\"; accepted: letters, digits and _, a letter first, no word of Python")
+        if name in self.uses:
+            raise Refused(f"{where}: found \"{shown or name}\", but {name} is {self.uses[name]} already; accepted: another name")
+        self.uses[name] = use
 
 
 class TaskFile:
@@ -13,13 +35,18 @@ class TaskFile:
         self.path = path
         task = data.get("task", {})
         check_keys(f"{path}: task", task, ["scene", "controller", "control_hz", "seconds", "participants", "places",
-                                            "settings", "tells", "stop", "player"])
+                                            "settings", "numbers", "tells", "says", "stop", "player"])
         self._read_files(task)
         self.control_hz = _number(f"{path}: task.control_hz", task.get("control_hz", 20), 0.1, 1000)
         self.seconds = _number(f"{path}: task.seconds", task.get("seconds", 60), 0.1, MOST_SECONDS)
-        self.participants, self.tells = self._names("participants", task), self._names("tells", task)
+        self._things, self._numbers, self._results = _Names(), _Names(OWN_NUMBERS), _Names(OWN_RESULTS)
+        self.participants = self._words("participants", task)
+        for name in self.participants:
+            self._things.add(f"{path}: task.participants", name, "a participant")
         self._read_places(_table(f"{path}: task.places", task.get("places", {})))
         self._read_settings(_table(f"{path}: task.settings", task.get("settings", {})))
+        self._read_told(task)
+        self._read_numbers(_table(f"{path}: task.numbers", task.get("numbers", {})))
         self._read_stages(_tables(f"{path}: stages", data.get("stages", [])))
         self.stop = self._formula(f"{path}: task.stop", task["stop"]) if "stop" in task else None
         self._read_measures(_tables(f"{path}: measures", data.get("measures", [])))
@@ -42,6 +69,7 @@ class TaskFile:
         path = self.path
         self.places = {}
         for name, at in tables.items():
+            self._things.add(f"{path}: task.places.{name}", name, "a place")
             if not isinstance(at, list) or len(at) != 3:
                 raise Refused(f"{path}: task.places.{name}: found {at!r}; accepted: [east, north, up] in metres")
             self.places[name] = [float(_number(f"{path}: task.places.{name}", v, -4e7, 4e7)) for v in at]
@@ -52,6 +80,8 @@ class TaskFile:
         for name, table in tables.items():
             where = f"{path}: task.settings.{name}"
             check_keys(where, table, ["default", "meaning", "limits", "words"])
+            self._numbers.add(where, name, "a setting")
+            self._results.add(where, name, "a setting")
             default = table.get("default")
             limits, words = table.get("limits", [-1e9, 1e9]), table.get("words")
             if not isinstance(limits, list) or len(limits) != 2:
@@ -60,15 +90,34 @@ class TaskFile:
             high = _number(f"{where}.limits", limits[1], low, 1e12)
             if words is not None and not (isinstance(words, list) and all(isinstance(w, str) for w in words)):
                 raise Refused(f"{where}.words: found {words!r}; accepted: a list of words")
-            if name == "controller":
-                raise Refused(f"{where}: found a setting that every task has; accepted: another name")
             if not isinstance(default, (int, float, str)):
                 raise Refused(f"{where}.default: found {default!r}; accepted: a number, true, false or a word")
             self.SETTINGS[name] = Setting(default, str(table.get("meaning", "")), low, high, words)
             self.SETTINGS[name].check(f"{where}.default", default)
 
+    def _read_told(self, task):
+        """tells: the player's numbers, which formulas name. says: the controller's, which the player hears; formulas do not name
+        them, so that no controller judges itself."""
+        self.tells, self.says = self._words("tells", task), self._words("says", task)
+        for key, who, names in (("tells", "player", self.tells), ("says", "controller", self.says)):
+            for name in names:
+                self._numbers.add(f"{self.path}: task.{key}", name, f"a number of the {who}")
+            if names and self.player is None:
+                raise Refused(f"{self.path}: task.{key}: found {names!r} without a player; accepted: task.player, a .py file that "
+                              + ("tells them: a controller does not judge itself" if key == "tells" else "hears them"))
+
+    def _read_numbers(self, tables):
+        """Formulas by name, in their order: each may name those above it."""
+        self.numbers = []
+        for name, text in tables.items():
+            where = f"{self.path}: task.numbers.{name}"
+            formula = self._formula(where, text)
+            self._numbers.add(where, name, "a number of the scenario")
+            self.numbers.append((name, formula))
+
     def _formula(self, where, text):
-        numbers = ["time", "stage_time"] + self.tells + [k for k, s in self.SETTINGS.items() if not isinstance(s.default, str)]
+        numbers = ["time", "stage_time", *self.tells, *(name for name, _ in getattr(self, "numbers", ())),
+                   *(k for k, s in self.SETTINGS.items() if not isinstance(s.default, str))]
         return Formula(where, text, self.participants + list(self.places), numbers)
 
     def _read_stages(self, tables):
@@ -78,6 +127,7 @@ class TaskFile:
             check_keys(where, stage, ["name", "until", "held_s", "at_most_s"])
             if not isinstance(stage.get("name"), str):
                 raise Refused(f"{where}.name: found {stage.get('name')!r}; accepted: a word")
+            self._results.add(f"{where}.name", f"{stage['name']}_s", "how long a stage took", stage["name"])
             self.stages.append({"name": stage["name"], "until": self._formula(f"{where}.until", stage.get("until")),
                                 "held_s": _number(f"{where}.held_s", stage.get("held_s", 0), 0, MOST_SECONDS),
                                 "at_most_s": _number(f"{where}.at_most_s", stage.get("at_most_s", self.seconds), 0, MOST_SECONDS)})
@@ -88,14 +138,15 @@ class TaskFile:
         path = self.path
         self.measures, self.MEASURES = [], {
             "success": ("yes or no", "whether every stage ended in its time"),
-            "time_s": ("s", "until the last stage ended, of the runs that succeed")}
-        self.MEASURES |= {f"{s['name']}_s": ("s", f"how long the stage {s['name']} took") for s in self.stages}
+            "time_s": ("s", "until the last stage ended, its held seconds included; of the runs that succeed")}
+        self.MEASURES |= {f"{s['name']}_s": ("s", f"how long the stage {s['name'].replace('_', ' ')} took, its held seconds included") for s in self.stages}
         for i, measure in enumerate(tables):
             where = f"{path}: measures[{i}]"
             check_keys(where, measure, ["name", "of", "statistic", "stage", "unit", "meaning"])
             statistic, stage = measure.get("statistic", "mean"), measure.get("stage")
-            if not isinstance(measure.get("name"), str) or measure["name"] in self.MEASURES:
-                raise Refused(f"{where}.name: found {measure.get('name')!r}; accepted: a new word")
+            if not isinstance(measure.get("name"), str):
+                raise Refused(f"{where}.name: found {measure.get('name')!r}; accepted: a word")
+            self._results.add(f"{where}.name", measure["name"], "a measure")
             _word_of(f"{where}.statistic", statistic, STATISTICS)
             if stage is not None and stage not in [s["name"] for s in self.stages]:
                 raise Refused(f"{where}.stage: found {stage!r}; accepted: {', '.join(s['name'] for s in self.stages)}")
@@ -104,7 +155,7 @@ class TaskFile:
             unit = "yes or no" if statistic == "ever" else "s" if statistic == "duration" else str(measure.get("unit", ""))
             self.MEASURES[measure["name"]] = (unit, str(measure.get("meaning", measure.get("of"))))
 
-    def _names(self, key, task):
+    def _words(self, key, task):
         names = task.get(key, [])
         if not isinstance(names, list) or not all(isinstance(n, str) for n in names):
             raise Refused(f"{self.path}: task.{key}: found {names!r}; accepted: a list of words")
@@ -121,3 +172,30 @@ def _tables(where, value):
     if not isinstance(value, list):
         raise Refused(f"{where}: found {value!r}; accepted: tables, each [[{where.split()[-1]}]]")
     return value
+
+
+def check_class(path, name):
+    """Refuses a Python file that no Python is or that has no class of this name with act(); it is read, not run."""
+    try:
+        with open(path, "rb") as file:
+            tree = ast.parse(file.read())
+    except (SyntaxError, ValueError, RecursionError) as error:
+        place = f", line {error.lineno}" if getattr(error, "lineno", None) else ""
+        raise Refused(f"{path}: found no Python ({getattr(error, 'msg', error)}{place}); accepted: a class {name}") from None
+    except OSError as error:
+        raise Refused(f"{path}: found a file that cannot be read ({error.strerror}); accepted: a class {name}") from None
+    bound = [n for n in ast.walk(tree) if _binds(n, name)]
+    if not bound:
+        raise Refused(f"{path}: found no class {name}; accepted: a class {name} with act()")
+    plain = [n for n in bound if isinstance(n, ast.ClassDef) and not n.bases and not n.decorator_list]
+    if len(plain) == len(bound) and not any(getattr(part, "name", "") == "act" for n in plain for part in n.body):
+        raise Refused(f"{path}: found a class {name} without act; accepted: a class {name} with act()")
+
+
+def _binds(node, name):
+    """Whether a node of a syntax tree makes this name: a class, an import, an assignment."""
+    if isinstance(node, ast.alias):
+        return (node.asname or node.name) in (name, "*")
+    if isinstance(node, ast.Name):
+        return node.id == name and isinstance(node.ctx, ast.Store)
+    return isinstance(node, (ast.ClassDef, ast.FunctionDef)) and node.name == name

@@ -1,4 +1,4 @@
-"""Baseline: beside the diver, at a distance that falls with the breathing rate, facing the diver."""
+"""Baseline: beside the diver, at a distance that falls with the rates of breath and heart, facing the diver."""
 import math
 
 import numpy as np
@@ -13,9 +13,9 @@ class Controller:
 
     def act(self, obs, stage):
         if "diver/motion" not in obs:
-            return {"wanted_m": self.s["rest_m"]}
+            return
         diver = obs["diver/motion"]
-        part = min(1.0, max(0.0, (diver.breath_bpm - 10.0) / 15.0)) if math.isfinite(diver.breath_bpm) else 0.0
+        part = 0.5 * _share(diver.breath_bpm, 10.0, 25.0) + 0.5 * _share(diver.heart_bpm, 60.0, 140.0)
         wanted = self.s["rest_m"] + part * (self.s["near_m"] - self.s["rest_m"])
         at, speed = np.array(diver.position), self._world_speed(diver)
         if np.hypot(*speed[:2]) > 0.1:
@@ -29,7 +29,6 @@ class Controller:
         place = at + wanted * np.array([math.cos(about), math.sin(about), 0.0])
         velocity = speed if self.s["look_ahead"] else np.zeros(3)
         self.rov.goto(*place, math.atan2(at[1] - place[1], at[0] - place[0]), velocity=velocity)
-        return {"wanted_m": wanted}
 
     def _world_speed(self, diver):
         x, y, z, w = diver.orientation
@@ -37,3 +36,8 @@ class Controller:
                          [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
                          [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
         return turn @ np.array(diver.linear_velocity)
+
+
+def _share(rate, rest, fast):
+    """Where a rate lies from rest, 0, to fast, 1; 0 where it is not known."""
+    return min(1.0, max(0.0, (rate - rest) / (fast - rest))) if math.isfinite(rate) else 0.0

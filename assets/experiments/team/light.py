@@ -14,7 +14,6 @@ class Controller:
         truth = self.world.truth
         diver, spot, rov = (np.array(truth(n).position) for n in ("diver", "thing", "rov"))
         sight = spot - diver
-        far = float(np.hypot(*sight[:2]))
         ahead = sight / max(float(np.linalg.norm(sight)), 1e-9)
         left = np.array([-ahead[1], ahead[0], 0.0]) / max(float(np.hypot(*ahead[:2])), 1e-9)
         side = 1.0 if (rov - diver) @ left >= 0 else -1.0
@@ -30,4 +29,3 @@ class Controller:
             place = diver + 1.5 * self.s["clear_m"] * off
         look = spot - rov
         self.rov.goto(*place, math.atan2(look[1], look[0]))
-        return {"sight_m": far}
