@@ -642,6 +642,23 @@ wanted_m = "3 - share - 0.01 * heart(diver)"
                 file.write(text)
             self.made(sets=[f"controller={mine}"])
 
+    def test_the_shipped_tasks_pass_their_checks(self):
+        import task as kind
+        for name in scenario.names():
+            if scenario.read(scenario.path_of(name))["experiment"]["kind"] == "task":
+                scenario.Scenario(scenario.path_of(name), {"task": kind.Task})
+
+    def test_a_participant_that_the_scene_lacks_is_refused_before_it_runs(self):
+        self.refused("scene.toml: found no participant shark; accepted: diver, rov", task='participants = ["rov", "shark"]')
+        self.made(task='participants = ["rov", "object_1"]')
+        with open(os.path.join(self.folder, "outer.toml"), "w") as file:
+            file.write('include = "scene.toml"\n[[vehicles]]\nname = "other"\n')
+        import task_file
+        outer = os.path.join(self.folder, "outer.toml")
+        task_file.check_participants(outer, ["rov", "other"])
+        with self.assertRaisesRegex(scenario.Refused, "accepted: diver, other, rov"):
+            task_file.check_participants(outer, ["buoy"])
+
 
 class Questionnaires(unittest.TestCase):
     def test_each_block_stands_once_at_each_place_and_after_each_other(self):

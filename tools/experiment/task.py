@@ -18,7 +18,7 @@ import numpy as np
 import files_read
 import task_figures
 from scenario import Failed, Refused
-from task_file import TaskFile, check_class
+from task_file import TaskFile, check_class, check_participants
 
 
 class Moment:
@@ -114,7 +114,8 @@ class Task(TaskFile):
         return files_read.of_scene(self.scene) + [f for module in (self.player, own) if module for f in files_read.of_module(module)]
 
     def check(self, settings):
-        """Refuses a controller that is not there or is none, before anything runs."""
+        """Refuses a participant that the scene lacks, and a controller that is not there or is none, before anything runs."""
+        check_participants(self.scene, self.participants)
         path = self._controller_of(settings)
         if path is not None and not os.path.isfile(path):
             raise Refused(f"controller: found no file {path}; accepted: baseline, null, or a controller's .py")

@@ -2,9 +2,10 @@
 import ast
 import keyword
 import os
+import re
 
 from formulas import Formula
-from scenario import Refused, Setting, check_keys, _number, _word_of
+from scenario import Refused, Setting, check_keys, read, _number, _word_of
 
 STATISTICS = ("last", "first", "mean", "rms", "min", "max", "ever", "share", "duration")
 MOST_SECONDS = 86400.0
@@ -172,6 +173,34 @@ def _tables(where, value):
     if not isinstance(value, list):
         raise Refused(f"{where}: found {value!r}; accepted: tables, each [[{where.split()[-1]}]]")
     return value
+
+
+def check_participants(scene, participants):
+    """Refuses a participant that the scene does not name, before the program opens it. Names that the program itself gives, as
+    object_0, pass."""
+    names = _names_in(scene)
+    for name in participants:
+        if name not in names and not re.fullmatch(r"(object|vehicle)_\d+", name):
+            raise Refused(f"{scene}: found no participant {name}; accepted: {', '.join(sorted(names)) or 'a scene that names it'}")
+
+
+def _names_in(path, depth=8):
+    """The names of a scene's objects and vehicles, with those of the files that it includes; at most 8 files deep, as the program
+    reads them."""
+    data, names = read(path), set()
+    folder = os.path.dirname(path)
+
+    def included(table):
+        files = table.get("include", [])
+        return [os.path.join(folder, f) for f in (files if isinstance(files, list) else [files]) if isinstance(f, str)]
+    if depth > 0:
+        for file in included(data):
+            names |= _names_in(file, depth - 1)
+    for key in ("objects", "vehicles"):
+        for table in data.get(key, []) if isinstance(data.get(key), list) else ():
+            if isinstance(table, dict) and isinstance(table.get("name"), str):
+                names.add(table["name"])
+    return names
 
 
 def check_class(path, name):

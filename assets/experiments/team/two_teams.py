@@ -1,6 +1,6 @@
 """Plays two divers and what lies on the bottom. An ROV that passes within swath_m / 2 looks at the bottom there and
 finds a contact with find_share; a diver who is told of a contact swims to the nearest one that he knows and nobody has
-told to be done, and looks at it for look_s. He tells of it by his own modem.
+told to be done, and looks at it for dwell_s. He tells of it by his own modem.
 
 Messages, at most 64 bytes: C and rows of (strip, seconds) a claim; K and numbers the contacts; D and numbers what is done."""
 import numpy as np
@@ -68,7 +68,7 @@ class Player:
                 speed = 0.35 * line / far
             else:
                 self.looked_s[team, goal] = self.looked_s.get((team, goal), 0.0) + dt
-                if self.looked_s[team, goal] >= self.s["look_s"]:
+                if self.looked_s[team, goal] >= self.s["dwell_s"]:
                     knows[goal] = True
                     self.done.add(goal)
                     self.talk.send(me, b"D" + bytes(sorted(i for i, over in knows.items() if over)), "done")
