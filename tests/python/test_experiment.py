@@ -504,6 +504,34 @@ class Refusals(unittest.TestCase):
                 scenario.Scenario(path, {})
 
 
+class Criteria(unittest.TestCase):
+    """Those that no run could ever hold are refused before the first."""
+
+    def test_what_cannot_hold_is_refused(self):
+        import shark
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "own.toml")
+
+            def made(text, sets=()):
+                with open(path, "w") as file:
+                    file.write('[experiment]\nkind = "shark"\n[factors]\noffset_m = [1.0, 3.0]\n[vary]\nshark_range_m = [4, 8]\n[[criteria]]\n' + text)
+                return scenario.Scenario(path, {"shark": shark}, sets=sets)
+            time, share = 'measure = "time_to_block_s"\n', 'measure = "blocked"\nstatistic = "share"\n'
+            for text, words in ((time + "at_most = 3\nwhere = { offset_m = 7.0 }", r"criteria\[0\].where.offset_m: found 7.0, which no run has; accepted: 1.0, 3.0"),
+                                (time + 'at_most = 3\nless = { offset_m = "x" }', r'less.offset_m: found "x"; accepted: a number'),
+                                (time + "at_most = 3\nwhere = { delay_s = 1.0 }", "where.delay_s: found 1.0, which no run has; accepted: 0.0"),
+                                (time + "at_most = 3\nwhere = { shark_range_m = 4.0 }", "found a setting that the seed draws; accepted: a factor"),
+                                (time + "at_least = 3\nat_most = 1", "found at_least 3 above at_most 1; accepted"),
+                                (time + 'statistic = "share"\nat_most = 3', "found the share of time_to_block_s; accepted: of what says yes or no: blocked, "),
+                                (share + "at_least = 95", r"at_least: found 95; accepted: a number in \[0, 1\]"),
+                                (share + "at_least = 2\nless = { offset_m = 1 }", r"accepted: a number in \[-1, 1\]")):
+                with self.assertRaisesRegex(scenario.Refused, words) as caught:
+                    made(text)
+                self.assertNotIn("\n", str(caught.exception))
+            made(share + "at_least = -0.5\nat_most = -0.5\nwhere = { offset_m = 3 }\nless = { offset_m = 1.0 }")
+            made(time + "at_most = 3\nwhere = { offset_m = 3.0 }", ["offset_m=[1, 2]"])  # other levels of a file's factor may be tried
+
+
 class Measures(unittest.TestCase):
     """Of a task, by its formulas."""
 

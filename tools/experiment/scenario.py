@@ -164,6 +164,7 @@ class Scenario:
         self.vary = {k: self._range(k, v) for k, v in data.get("vary", {}).items()}
         self.factors = {k: self._levels(k, v) for k, v in data.get("factors", {}).items()}
         self.added, self.replaced = [], set()  # factors of --set; keys of --set
+        self._of_file = dict(self.settings), dict(self.vary), dict(self.factors)  # criteria name what the file has, before --set
         for text in sets:
             self._set(text)
         if hasattr(self.kind, "check"):  # of files that settings name, before anything runs
@@ -240,9 +241,35 @@ class Scenario:
         for key in ("at_most", "at_least"):
             if key in table:
                 _number(f"{where}.{key}", table[key], -1e300, 1e300)
+        if table.get("at_least", -math.inf) > table.get("at_most", math.inf):
+            raise Refused(f"{where}: found at_least {table['at_least']:g} above at_most {table['at_most']:g}; accepted: limits that a "
+                          "number can hold")
+        self._check_share(where, table)
         for part in ("where", "less"):
-            check_keys(f"{where}.{part}", table.get(part, {}), list(self.kind.SETTINGS))
+            self._check_condition(f"{where}.{part}", table.get(part, {}))
         return table
+
+    def _check_share(self, where, table):
+        """A share is of runs that say yes, and what says yes or no lies in [0, 1]; a difference of two in [-1, 1]."""
+        yes_or_no = self.kind.MEASURES[table["measure"]][0] == "yes or no"
+        if table.get("statistic") == "share" and not yes_or_no:
+            known = [name for name, (unit, _) in self.kind.MEASURES.items() if unit == "yes or no"]
+            raise Refused(f"{where}: found the share of {table['measure']}; accepted: of what says yes or no: {', '.join(known) or 'none here'}")
+        for key in ("at_most", "at_least"):
+            if yes_or_no and key in table:
+                _number(f"{where}.{key}", table[key], -1 if "less" in table else 0, 1)
+
+    def _check_condition(self, where, condition):
+        """Refuses a condition that no run of the file has."""
+        settings, vary, factors = self._of_file
+        check_keys(where, condition, list(self.kind.SETTINGS))
+        for key, value in condition.items():
+            self.kind.SETTINGS[key].check(f"{where}.{key}", value)
+            if key in vary and key not in factors:
+                raise Refused(f"{where}.{key}: found a setting that the seed draws; accepted: a factor")
+            levels = factors.get(key, [settings[key]])
+            if value not in levels:
+                raise Refused(f"{where}.{key}: found {_words(value)}, which no run has; accepted: {', '.join(map(_words, levels))}")
 
     def list_runs(self):
         out = []
