@@ -47,6 +47,8 @@ const std::map<std::string, std::string, std::less<>>& definitions() {
        "float32 field_of_view\nfloat32 min_range\nfloat32 max_range\nfloat32 range\n"},
       // Sound of a microphone: samples from -1 to 1.
       {"neritic_msgs/Audio", "std_msgs/Header header\nfloat64 rate_hz\nfloat32[] samples\n"},
+      // A strap's ECG: microvolts.
+      {"neritic_msgs/Ecg", "std_msgs/Header header\nfloat64 rate_hz\nfloat32[] samples\n"},
       {"sensor_msgs/Image",
        "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\n"
        "uint8 is_bigendian\nuint32 step\nuint8[] data\n"},

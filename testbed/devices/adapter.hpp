@@ -10,7 +10,7 @@
 #include "engine/net/counter_track.hpp"
 #include "engine/net/wire_bytes.hpp"
 #include "testbed/devices/outlet.hpp"
-#include "testbed/samples/sound_queue.hpp"
+#include "testbed/samples/signal_queue.hpp"
 
 namespace neritic::testbed {
 
@@ -38,8 +38,8 @@ class DeviceAdapter {
   virtual std::string trouble() const { return {}; }
   net::ClockEstimate clock() const { return clock_.estimate(); }
   const net::ClockMap& clock_map() const { return clock_; }
-  // Where the sound goes that the device hears, besides its samples; borrowed.
-  virtual void hear_into(SoundQueue*) {}
+  // Where the signal goes that the device sends, besides its samples; borrowed.
+  virtual void give_signal_to(SignalQueue*) {}
   // Only where the protocol asks the device for its time (LSL).
   void exchange(TimeNs t0_ns, TimeNs t1_ns, TimeNs t2_ns, TimeNs t3_ns) {
     clock_.add_exchange(t0_ns, t1_ns, t2_ns, t3_ns);

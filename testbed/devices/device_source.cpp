@@ -64,6 +64,10 @@ Result<std::unique_ptr<DeviceSource>> DeviceSource::open(const scene::DeviceSour
   return out;
 }
 
+std::string DeviceSource::signal_kind() const {
+  return settings_.device == "microphone" ? "sound" : settings_.device == "strap" ? "ecg" : "";
+}
+
 DeviceSource::~DeviceSource() {
   stop_ = true;
   if (thread_.joinable()) thread_.join();

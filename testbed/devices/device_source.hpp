@@ -49,9 +49,10 @@ class DeviceSource final : public SampleSource {
   // Any thread.
   DeviceHealth health() const;
   const std::string& name() const { return settings_.name; }
-  // What a microphone hears; of other devices nothing. Any thread.
-  SoundQueue& sound() { return sound_; }
-  bool hears() const { return settings_.device == "microphone"; }
+  // The signal of a microphone ("sound") or a strap ("ecg"); other devices have none (""). Any
+  // thread.
+  SignalQueue& signal() { return signal_; }
+  std::string signal_kind() const;
   // Polled alone.
   const net::ClockMap& clock_map() const { return adapter_->clock_map(); }
 
@@ -59,13 +60,13 @@ class DeviceSource final : public SampleSource {
   DeviceSource(const scene::DeviceSource& source, std::unique_ptr<Feed> feed,
                std::unique_ptr<DeviceAdapter> adapter, const Outlet& outlet)
       : settings_(source), feed_(std::move(feed)), adapter_(std::move(adapter)), outlet_(outlet) {
-    adapter_->hear_into(&sound_);
+    adapter_->give_signal_to(&signal_);
   }
   void run();
   void tell(TimeNs now_ns);
 
   scene::DeviceSource settings_;
-  SoundQueue sound_;
+  SignalQueue signal_;
   std::unique_ptr<Feed> feed_;
   std::unique_ptr<DeviceAdapter> adapter_;
   Outlet outlet_;

@@ -26,10 +26,11 @@ std::vector<DeviceHealth> Devices::health() const {
   return out;
 }
 
-std::vector<SoundSource> Devices::sounds() {
-  std::vector<SoundSource> out;
+std::vector<SignalSource> Devices::signals() {
+  std::vector<SignalSource> out;
   for (const auto& source : sources_)
-    if (source->hears()) out.push_back({source->name(), &source->sound()});
+    if (const std::string kind = source->signal_kind(); !kind.empty())
+      out.push_back({source->name(), kind, &source->signal()});
   return out;
 }
 

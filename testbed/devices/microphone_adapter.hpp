@@ -20,7 +20,7 @@ class MicrophoneAdapter final : public DeviceAdapter {
   // A block is ten seconds long.
   TimeNs max_age_ns() const override { return 15'000'000'000; }
 
-  void hear_into(SoundQueue* sound) override { sound_ = sound; }
+  void give_signal_to(SignalQueue* sound) override { sound_ = sound; }
 
   // How long packets wait for a missing one, and how many at most.
   static constexpr TimeNs kWait_ns = 100'000'000;
@@ -51,7 +51,7 @@ class MicrophoneAdapter final : public DeviceAdapter {
   std::int64_t timestamp_ = 0;  // of the newest packet, without wraps
   bool timed_ = false;
   std::vector<float> block_, last_;
-  SoundQueue* sound_ = nullptr;
+  SignalQueue* sound_ = nullptr;
 };
 
 }  // namespace neritic::testbed

@@ -130,6 +130,11 @@ void StrapAdapter::take_ecg(net::Bytes bytes, TimeNs arrived_ns, Outlet& out) {
   ecg_->push(samples);
   const auto sent_ns = static_cast<TimeNs>(frame->time_ns & INT64_MAX);
   clock_.add(sent_ns, arrived_ns);
+  // The stamp is the last sample's.
+  if (signal_ && !samples.empty())
+    signal_->push(clock_.to_host(sent_ns) -
+                      std::llround(1e9 * static_cast<double>(samples.size() - 1) / net::kEcg_hz),
+                  net::kEcg_hz, {samples.begin(), samples.end()});
   out.send(Heart{ecg_->state()}, clock_.to_host(sent_ns), arrived_ns);
 }
 

@@ -15,6 +15,7 @@ class StrapAdapter final : public DeviceAdapter {
  public:
   // It speaks once a second, of what was before.
   TimeNs max_age_ns() const override { return 3'000'000'000; }
+  void give_signal_to(SignalQueue* ecg) override { signal_ = ecg; }
 
  private:
   void receive(net::Bytes bytes, bool cut, TimeNs arrived_ns, Outlet& out) override;
@@ -29,6 +30,7 @@ class StrapAdapter final : public DeviceAdapter {
   TimeNs interval_ns_ = 0;                          // up to which intervals or gaps are known
   std::vector<std::byte> last_rate_;
   std::optional<std::uint64_t> last_ecg_ns_;  // by the strap's clock
+  SignalQueue* signal_ = nullptr;
 };
 
 }  // namespace neritic::testbed

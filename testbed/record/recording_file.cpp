@@ -43,9 +43,9 @@ RecordingFile::RecordingFile(const PhysicsWorld& world, const PhysicsSimulation&
       file_(std::move(path)),
       log_(file_, run_of(world, simulation, options_), options_.recorded_at_ns),
       ros_(file_, world),
-      sound_channels_(options_.sounds.size()) {
+      signal_channels_(options_.signals.size()) {
   name_sources();
-  for (const SoundSource& source : options_.sounds) source.sound->want(true);
+  for (const SignalSource& source : options_.signals) source.queue->want(true);
 }
 
 void RecordingFile::name_sources() {
@@ -77,27 +77,30 @@ Status RecordingFile::accept(const sim::Snapshot<PhysicsState>& step,
   for (const Sample& sample : outputs)
     if (!ros_.output(sample, log_.now_ns(), log_.scene_ns(sample.header.captured_ns)))
       log_.sample(sample);
-  write_sounds(step);
+  write_signals(step);
   return {};
 }
 
-void RecordingFile::write_sounds(const sim::Snapshot<PhysicsState>& step) {
+void RecordingFile::write_signals(const sim::Snapshot<PhysicsState>& step) {
   const auto log_ns = static_cast<std::uint64_t>(std::llround(1e9 * step.time_s));
-  for (std::size_t i = 0; i < options_.sounds.size(); ++i) {
-    const SoundSource& source = options_.sounds[i];
-    SoundChannel& channel = sound_channels_[i];
-    for (const HeardSound& sound : source.sound->take()) {
-      if (!sound_schema_)
-        sound_schema_ = file_.add_schema(recording::ros_schema("neritic_msgs/msg/Audio"));
+  for (std::size_t i = 0; i < options_.signals.size(); ++i) {
+    const SignalSource& source = options_.signals[i];
+    SignalChannel& channel = signal_channels_[i];
+    for (const SignalPacket& packet : source.queue->take()) {
       if (!channel.id)
-        channel.id = file_.add_channel({*sound_schema_, "/" + source.name + "/sound", "cdr", {}});
-      const TimeNs stamp_ns = std::max<TimeNs>(sound.captured_ns + step.scene_from_host_ns(), 0);
+        channel.id = file_.add_channel(
+            {file_.add_schema(recording::ros_schema(
+                 source.kind == "ecg" ? "neritic_msgs/msg/Ecg" : "neritic_msgs/msg/Audio")),
+             "/" + source.name + "/" + source.kind,
+             "cdr",
+             {}});
+      const TimeNs stamp_ns = std::max<TimeNs>(packet.captured_ns + step.scene_from_host_ns(), 0);
       std::string message;
       recording::CdrWriter cdr(message);
       cdr.header(stamp_ns, source.name);
-      cdr.number(sound.rate_hz);
-      cdr.count(sound.samples.size());
-      for (const float sample : sound.samples) cdr.number(sample);
+      cdr.number(packet.rate_hz);
+      cdr.count(packet.samples.size());
+      for (const float sample : packet.samples) cdr.number(sample);
       file_.message({*channel.id, channel.sequence++, log_ns, static_cast<std::uint64_t>(stamp_ns),
                      std::as_bytes(std::span(message))});
     }
@@ -105,7 +108,7 @@ void RecordingFile::write_sounds(const sim::Snapshot<PhysicsState>& step) {
 }
 
 Status RecordingFile::finish() {
-  for (const SoundSource& source : options_.sounds) source.sound->want(false);
+  for (const SignalSource& source : options_.signals) source.queue->want(false);
   if (!file_.failed()) name_sources();
   return file_.finish();
 }

@@ -12,7 +12,7 @@
 #include "testbed/record/ros_outputs.hpp"
 #include "testbed/record/step_sink.hpp"
 #include "testbed/samples/sample_log.hpp"
-#include "testbed/samples/sound_queue.hpp"
+#include "testbed/samples/signal_queue.hpp"
 
 namespace neritic::testbed {
 
@@ -22,9 +22,9 @@ struct RecordingOptions {
   std::optional<std::int64_t> recorded_at_ns;  // since 1970, of runs on a real clock
   // Any thread: one line, when the file fails.
   std::function<void(const std::string&)> on_failure;
-  // A topic SOURCE/sound each, which `neritic recording export --format wav` makes a .wav of. The
-  // queues outlive the recording.
-  std::vector<SoundSource> sounds;
+  // A topic each, SOURCE/sound or SOURCE/ecg, which `neritic recording export` gives sample by
+  // sample. The queues outlive the recording.
+  std::vector<SignalSource> signals;
 };
 // The options of a scene that was read from a file. kBadInput if it cannot be read again.
 Result<RecordingOptions> recording_of_scene(const std::filesystem::path& scene);
@@ -49,7 +49,7 @@ class RecordingFile final : public StepSink {
  private:
   void name_sources();
   void tell_failure();
-  void write_sounds(const sim::Snapshot<PhysicsState>& step);
+  void write_signals(const sim::Snapshot<PhysicsState>& step);
 
   const PhysicsWorld& world_;
   const SampleInbox& inbox_;
@@ -57,13 +57,12 @@ class RecordingFile final : public StepSink {
   McapFile file_;
   SampleLogWriter log_;
   RosOutputs ros_;
-  // Of options_.sounds, from their first sound on.
-  struct SoundChannel {
+  // Of options_.signals, from their first packet on.
+  struct SignalChannel {
     std::optional<std::uint16_t> id;
     std::uint32_t sequence = 0;
   };
-  std::vector<SoundChannel> sound_channels_;
-  std::optional<std::uint16_t> sound_schema_;
+  std::vector<SignalChannel> signal_channels_;
   bool told_ = false;
 };
 

@@ -393,7 +393,7 @@ Status World::record(const std::filesystem::path& path) {
     return refusal("record", "a recording that runs, " + recording.file().string(),
                    "that recording's end before it");
   NERITIC_TRY(RecordingOptions options, recording_of_scene(parts_->path));
-  if (parts_->devices) options.sounds = parts_->devices->sounds();
+  if (parts_->devices) options.signals = parts_->devices->signals();
   std::filesystem::path base = path;
   if (base.extension() == ".mcap") base.replace_extension();
   recording.begin(parts_->physics->simulation(), base, std::move(options));

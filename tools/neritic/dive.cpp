@@ -298,7 +298,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::stri
   if (physics && !replay) {
     NERITIC_TRY(devices, Devices::open(session->scene(), physics->world(), physics->inbox(),
                                        DeviceSource::Pace::kThread));
-    recording.sounds = devices->sounds();
+    recording.signals = devices->signals();
   }
   NERITIC_TRY(const auto hud, hud_options(flags, physics.get(), unasked_hud(screen)));
   if (hud && !screen.headset && !fit_one_window(hud->layouts))

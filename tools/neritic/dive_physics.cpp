@@ -65,7 +65,7 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,
       log_warn("{}: its devices send in real time; only --realtime listens to them", flags.scene);
     NERITIC_TRY(devices,
                 Devices::open(scene, world, physics->inbox(), DeviceSource::Pace::kThread));
-    recording.sounds = devices->sounds();
+    recording.signals = devices->signals();
   }
   const StepFiles files(flags.files, scene.title, recording, *physics);
   std::vector<StepSink*> sinks{&watch};

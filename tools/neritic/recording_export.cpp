@@ -402,7 +402,8 @@ class ExportVisitor final : public recording::McapVisitor {
       if (flags_.format == "csv") return std::make_unique<SignalCsv>(path, std::move(*signal));
       if (flags_.format == "npy") return std::make_unique<SignalNpy>(path, std::move(*signal));
       if (flags_.format == "xdf") return std::make_unique<XdfSignal>(*xdf_, std::move(*signal));
-      if (flags_.format == "wav") return std::make_unique<WavTopic>(path, std::move(*signal));
+      if (flags_.format == "wav" && schema.name == "neritic_msgs/msg/Audio")
+        return std::make_unique<WavTopic>(path, std::move(*signal));
     }
     if (flags_.format == "csv") return std::make_unique<CsvTopic>(path, topic, std::move(type));
     if (flags_.format == "npy") return std::make_unique<NpyTopic>(path, topic, std::move(type));

@@ -61,7 +61,7 @@ Status simulate_lab(const SimulateFlags& flags, const scene::Scene& scene,
   RecordingOptions recording;
   if (!flags.files.record.empty()) {
     NERITIC_TRY(recording, recording_options(scene.path, false));
-    recording.sounds = devices->sounds();
+    recording.signals = devices->signals();
   }
   const StepFiles files(flags.files, scene.title, recording, *physics);
   std::vector<StepSink*> sinks{&watch};

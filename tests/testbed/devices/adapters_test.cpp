@@ -237,6 +237,34 @@ TEST(StrapAdapter, AnEcgOverALossyLinkGivesTheHeartsRate) {
   }
 }
 
+// Each packet as it came, at its first sample's time: together the whole signal but for what was
+// lost.
+TEST(StrapAdapter, ItsEcgIsGivenToWhoeverRecordsIt) {
+  Bench bench("strap = \"strap udp\"\n");
+  StrapAdapter strap;
+  SignalQueue queue;
+  strap.give_signal_to(&queue);
+  queue.want(true);
+  (void)run_device("strap", {.heart_bpm = 70.0}, 20.0, {.jitter_s = 0.02}, strap, bench);
+  const auto packets = queue.take();
+  ASSERT_GT(packets.size(), 30u);
+  std::size_t samples = 0;
+  float largest_uv = 0.0F;
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    const SignalPacket& packet = packets[i];
+    EXPECT_NEAR(packet.rate_hz, net::kEcg_hz, 0.5);
+    // The next begins a sample after this one ends, as well as the clock is known.
+    if (i > packets.size() / 2 && i + 1 < packets.size()) {
+      EXPECT_NEAR(1e-9 * static_cast<double>(packets[i + 1].captured_ns - packet.captured_ns),
+                  static_cast<double>(packet.samples.size()) / packet.rate_hz, 0.01);
+    }
+    samples += packet.samples.size();
+    for (const float value : packet.samples) largest_uv = std::max(largest_uv, value);
+  }
+  EXPECT_NEAR(static_cast<double>(samples) / net::kEcg_hz, 20.0, 1.5);
+  EXPECT_GT(largest_uv, 300.0F);  // an R wave
+}
+
 TEST(JacketAdapter, AllFormsPress) {
   Bench bench("jacket = \"jacket udp\"\n");
   JacketAdapter jacket;

@@ -80,7 +80,7 @@ class TopicCount final : public recording::McapVisitor {
 TEST(RecordingFile, ARecordingByKeyHasTheSoundFromItsBeginningToItsEnd) {
   const test::ScratchFolder folder;
   TestDive dive = dive_of(hover_text(""));
-  SoundQueue heard;
+  SignalQueue heard;
   const auto hear = [&](int packets) {
     for (int i = 0; i < packets; ++i)
       heard.push(20'000'000 * i, 16'000.0, std::vector<float>(320, 0.25F));
@@ -89,7 +89,7 @@ TEST(RecordingFile, ARecordingByKeyHasTheSoundFromItsBeginningToItsEnd) {
   for (const char* name : {"a", "b"}) {
     hear(5);  // nobody records it
     RecordingOptions options;
-    options.sounds = {{"mic", &heard}};
+    options.signals = {{"mic", "sound", &heard}};
     key.begin(*dive.simulation, folder / name, std::move(options));
     hear(3);
     dive.simulation->advance(1);

@@ -1,5 +1,6 @@
-// The sound that a microphone heard, from the device's thread to the recording that wants it, one
-// at a time. Bounded: half a minute that nobody takes is dropped. Any thread.
+// A signal as a device sent it, a microphone's sound or a strap's ECG, from the device's thread to
+// the recording that wants it, one at a time. Bounded: half a minute that nobody takes is dropped.
+// Any thread.
 #pragma once
 
 #include <mutex>
@@ -11,14 +12,14 @@
 
 namespace neritic::testbed {
 
-// A packet of sound: when its first sample was heard, by the clock of the device's samples.
-struct HeardSound {
+// A packet of it: when its first sample was taken, by the clock of the device's samples.
+struct SignalPacket {
   TimeNs captured_ns = 0;
   double rate_hz = 0.0;
-  std::vector<float> samples;  // -1 to 1
+  std::vector<float> samples;  // sound: -1 to 1; ECG: microvolts
 };
 
-class SoundQueue {
+class SignalQueue {
  public:
   static constexpr double kMost_s = 30.0;
 
@@ -36,7 +37,7 @@ class SoundQueue {
     waiting_.push_back({captured_ns, rate_hz, samples});
     waiting_s_ += static_cast<double>(samples.size()) / rate_hz;
   }
-  std::vector<HeardSound> take() {
+  std::vector<SignalPacket> take() {
     const std::lock_guard lock(mutex_);
     waiting_s_ = 0.0;
     return std::exchange(waiting_, {});
@@ -46,13 +47,13 @@ class SoundQueue {
   std::mutex mutex_;
   bool wanted_ = false;
   double waiting_s_ = 0.0;
-  std::vector<HeardSound> waiting_;
+  std::vector<SignalPacket> waiting_;
 };
 
-// What the source of that name hears.
-struct SoundSource {
-  std::string name;
-  SoundQueue* sound = nullptr;
+// What the source of that name sends: "sound" or "ecg".
+struct SignalSource {
+  std::string name, kind;
+  SignalQueue* queue = nullptr;
 };
 
 }  // namespace neritic::testbed
