@@ -296,6 +296,17 @@ class Runs(unittest.TestCase):
             self.assertNotEqual(made[0].settings, made[1].settings)
             self.assertEqual(made[0].fingerprint(), made[1].fingerprint())
 
+    def test_two_experiments_do_not_write_into_one_folder(self):
+        def another(settings, seed, tools):
+            try:
+                self.run_all(tools.out, [8], 1, resume=True)
+            except scenario.Refused as error:
+                return {"refused": "found another experiment that still writes there" in str(error)}, {}
+            return {}, {}
+        with tempfile.TemporaryDirectory() as out:
+            self.assertEqual(self.run_all(out, [1], 1, run=another)[0]["measures"], {"refused": True})
+            self.assertEqual(self.run_all(out, [1, 8], 1, resume=True)[1]["measures"], {"m": 8})
+
     def test_what_a_run_prints_is_no_part_of_the_results(self):
         code = f"""import sys
 sys.path.insert(0, {HERE!r})

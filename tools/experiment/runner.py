@@ -6,6 +6,7 @@ ends or does not return within the scenario's run_limit_s is a failed run; the o
 """
 import collections
 import ctypes
+import fcntl
 import json
 import math
 import multiprocessing
@@ -166,6 +167,19 @@ def read_results(path):
 
 def run_all(scenario, out, program, workers, resume, quiet):
     """Every run's result, in the scenario's order. Interrupted: endings.Ended, what is finished is in the file."""
+    handle = os.open(out, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise Refused(f"{out}: found another experiment that still writes there; accepted: another --out, or --resume when that has "
+                          "ended") from None
+        return _run_all(scenario, out, program, workers, resume, quiet)
+    finally:
+        os.close(handle)
+
+
+def _run_all(scenario, out, program, workers, resume, quiet):
     path = os.path.join(out, "runs.jsonl")
     runs = scenario.list_runs()
     head = {"format": FORMAT, "scenario": scenario.name, "kind": scenario.kind_name, "fingerprint": scenario.fingerprint(),
