@@ -54,6 +54,17 @@ class Boxes(unittest.TestCase):
     def test_ssd_tells_corners_as_shares(self):
         self.assertAlmostEqual(self.found("ssd", [[[[0, 1, 0.7, 22 / 64, 12 / 64, 42 / 64, 20 / 64]]]]), 0.7, 5)
 
+    def test_three_outputs_tell_corners_in_pixels(self):
+        out = {"boxes": [[22, 12, 42, 20]], "labels": [[1.0]], "scores": [0.6]}
+        self.assertAlmostEqual(looking.boxes_of("rcnn", out, 2, 64)[0][1], 0.6)
+        (name, _, box), = looking.boxes_of("rcnn", out, 2, 64)
+        self.assertEqual((name, box), (1, (22, 12, 20, 8)))
+        self.assertEqual(looking.boxes_of("rcnn", {**out, "labels": [5]}, 2, 64), [])
+        self.assertEqual(looking.boxes_of("rcnn", {"boxes": np.zeros((0, 4)), "labels": [], "scores": []}, 2, 64), [])
+        for wrong in ({"labels": [0.6], "scores": [1.0]}, {"scores": [1.5]}, {"boxes": [1, 2, 3]}):  # as where two are exchanged
+            with self.assertRaisesRegex(Failed, "accepted: n x 4, n whole numbers"):
+                looking.boxes_of("rcnn", {**out, **wrong}, 2, 64)
+
     def test_rows_of_another_width_are_told(self):
         with self.assertRaisesRegex(Failed, "rows of 6 numbers; accepted: 7 for 2 classes of yolo5"):
             looking.boxes_of("yolo5", np.zeros((1, 3, 6)), 2, 64)
@@ -356,6 +367,89 @@ class Looking(unittest.TestCase):
                     file.write(text)
                 with self.assertRaisesRegex(Refused, words):
                     looking.Detector(path)
+
+    def exported(self, folder, name, outputs, about):
+        """A network of four rows that depend on the picture: boxes, labels and scores as torchvision's Faster R-CNN tells them."""
+        class Three(torch.nn.Module):
+            def __init__(self):
+                super().__init__()
+                self.part = torch.nn.Conv2d(3, 6, 32, 32)
+                torch.nn.init.zeros_(self.part.weight)
+                self.part.weight.data[4] = 1 / (3 * 32 * 32)  # the score: the mean of a quarter
+                self.part.bias.data[:] = torch.tensor([8.0, 4.0, 40.0, 36.0, 0.0, 1.0])
+
+            def forward(self, x):
+                rows = self.part(x).reshape(6, 4)
+                told = {"boxes": rows[:4].transpose(0, 1), "labels": rows[5].to(torch.int64), "scores": rows[4]}
+                return tuple(told[k] for k in outputs)
+        path = os.path.join(folder, name + ".onnx")
+        torch.onnx.export(Three().eval(), torch.zeros(1, 3, 64, 64), path, opset_version=11, output_names=["out_" + k for k in "xyz"])
+        with open(os.path.join(folder, name + ".json"), "w") as file:
+            json.dump({"kind": "rcnn", "classes": ["background", "shark"], "side": 64, "normalise": "none", **about}, file)
+        return path
+
+    @unittest.skipIf(torch is None, "no PyTorch here")
+    def test_an_export_of_three_outputs_looks_whatever_their_order(self):
+        picture = np.zeros((128, 128, 3), np.uint8)
+        picture[:64, 64:] = 204  # the second quarter, 0.8
+        with tempfile.TemporaryDirectory() as folder:
+            for outputs in (["boxes", "labels", "scores"], ["scores", "boxes", "labels"]):
+                path = self.exported(folder, "net", outputs, {"outputs": outputs})
+                self.assertEqual(looking.check(path, 3), ("rcnn", ["background", "shark"], 1))
+                (name, sure, box), = looking.Detector(path).look(picture)
+                self.assertEqual(name, "shark")
+                self.assertAlmostEqual(sure, 0.8, 5)
+                np.testing.assert_allclose(box, (16, 8, 64, 64), atol=1e-4)
+            # A background is no finding.
+            self.assertEqual(looking.Detector(self.exported(folder, "other", outputs, {"outputs": outputs, "classes": ["shark", "background"]})).look(picture), [])
+            with self.assertRaisesRegex(Refused, "outputs .*; accepted: of kind rcnn, boxes, labels, scores"):
+                looking.check(self.exported(folder, "bad", outputs, {"outputs": ["boxes", "scores"]}), 3)
+            with self.assertRaisesRegex(Refused, "bad.onnx: .*accepted: n x 4, n whole numbers"):
+                looking.check(self.exported(folder, "bad", ["labels", "boxes", "scores"], {}), 3)
+
+    @unittest.skipIf(torch is None, "no PyTorch here")
+    def test_a_layer_that_opencv_lacks_is_named(self):
+        class Chosen(torch.nn.Module):
+            def forward(self, x):
+                return x[torch.nonzero(x > 0.5)[:, 0]]
+        with tempfile.TemporaryDirectory() as folder:
+            path = self.exported(folder, "net", ["boxes", "labels", "scores"], {})
+            torch.onnx.export(Chosen(), torch.zeros(10, 4), path, opset_version=11)
+            with self.assertRaisesRegex(Refused, "it has no layer NonZero"):
+                looking.check(path, 3)
+
+    @unittest.skipUnless(os.path.exists(detector.model_of("shipped")), "no shipped detector")
+    def test_what_cannot_look_is_refused_before_a_run(self):
+        import shark
+        settings = {k: v.default for k, v in shark.SETTINGS.items()}
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "mine.onnx")
+            with open(detector.model_of("small"), "rb") as file:
+                net = file.read()
+
+            def refused(words, data=net, **more):
+                about = {"kind": "classifier", "classes": crops.CLASSES, "side": 64, **more}
+                with open(path, "wb") as file:
+                    file.write(data)
+                with open(os.path.join(folder, "mine.json"), "w") as file:
+                    json.dump({k: v for k, v in about.items() if v is not None}, file)
+                for check in (lambda: shark.check(settings | {"detector": path}),
+                              lambda: detector.check({"eye": "camera", "looks": "learnt", "model": path})):
+                    with self.assertRaisesRegex(Refused, words) as caught:
+                        check()
+                    self.assertNotIn("\n", str(caught.exception))
+            refused("mine.onnx: found a network that OpenCV cannot read", b"\x08\x07 no network" * 9)
+            refused("mine.onnx: found a network that OpenCV cannot read", net[:len(net) // 2])
+            refused("mine.onnx: found a network that OpenCV cannot read", b"")
+            refused('mine.json: found key "clases"; accepted: classes', clases=["a"])
+            refused('mine.json: found key "normalize"; accepted: normalise', normalize="none")
+            refused("mine.json: found no classes; accepted", classes=None)
+            refused("found kind 'guess'", kind="guess")
+            refused("found a classifier of 5 numbers; accepted: a classifier of 2", classes=["shark", "nothing"])
+            refused(r"accepted: (one with a class shark|a classifier of nothing, diver)", classes=["nothing", "diver", "rov", "whale", "fish"])
+            refused("found channels 1; accepted: 3 here", channels=1)
+            refused("found classes 'shark'", classes="shark")
+            shark.check(settings | {"detector": "shipped"})
 
     @unittest.skipUnless(os.path.exists(detector.model_of("shipped")), "no shipped detector")
     def test_several_look_with_their_mean_and_both_ways_round(self):

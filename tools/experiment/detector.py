@@ -10,7 +10,7 @@ import numpy as np
 import crops
 import looking
 import sonar_crops
-from scenario import SHIPPED, Failed, Refused, Setting
+from scenario import SHIPPED, Refused, Setting
 
 MAKERS = {"camera": crops, "sonar": sonar_crops}
 SETTINGS = {
@@ -43,20 +43,21 @@ def files(settings):
 
 
 def check(settings):
-    """Refuses a model that is not there, and a sonar with the looks of a camera, before anything runs."""
+    """Refuses a model that is not there, cannot look or names other things, and a sonar with the looks of a camera, before anything runs."""
     if settings["eye"] != "camera" and settings["looks"] != "learnt":
         raise Refused(f"looks: found {settings['looks']} with eye {settings['eye']}; accepted: learnt")
-    files(settings)
+    maker, path = MAKERS[settings["eye"]], model_of(settings["model"], settings["eye"])
+    kind, classes, looks = looking.check(path, 3 if settings["eye"] == "camera" else 1)
+    most = getattr(maker, "LOOKS", 1)
+    if kind != "classifier" or classes != maker.CLASSES or looks not in (1, most):
+        raise Refused(f"{path}: found a {kind} of {', '.join(classes)}, {looks} looks; accepted: a classifier of {', '.join(maker.CLASSES)}, "
+                      f"{' or '.join(map(str, sorted({1, most})))} looks")
 
 
 def run(settings, seed, tools):
     maker = MAKERS[settings["eye"]]
     detector = looking.Detector(model_of(settings["model"], settings["eye"]))
-    if detector.classes != maker.CLASSES:
-        raise Failed(f"{settings['model']}: found the classes {', '.join(detector.classes)}; accepted: {', '.join(maker.CLASSES)}")
     looks = getattr(maker, "LOOKS", 1)
-    if detector.looks not in (1, looks):
-        raise Failed(f"{settings['model']}: found {detector.looks} looks; accepted: 1 or {looks}")
     scene = maker.Maker(tools, "test", seed, **({"looks": settings["looks"]} if maker is crops else {}))
     pixels, classes = scene.some(settings["crops"])
     scene.close()

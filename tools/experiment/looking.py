@@ -1,24 +1,36 @@
 """A detector read from an ONNX file by OpenCV, and a thread of its own that looks at pictures with it.
 
-Beside NAME.onnx lies NAME.json: {"kind": "classifier", "yolo5", "yolo8" or "ssd", "classes": [...], "side": 64,
-"normalise": "crop" (the default) or "none", "mirror": false}. With "mirror" a classifier also looks at the crop with left
+Beside NAME.onnx lies NAME.json: {"kind": "classifier", "yolo5", "yolo8", "ssd" or "rcnn", "classes": [...], "side": 64,
+"channels": 1 or 3 (the default), "normalise": "crop" (the default) or "none", "mirror": false}; KEYS has all. With "mirror" a classifier also looks at the crop with left
 and right exchanged and answers the mean, for twice the time. With "with": ["OTHER.onnx"] the classifiers of those files, beside it,
 look too. With "looks": N it is meant for N pictures of the same thing: [N, row, column(, channel)]. The mean of all counts, to
 the power "power", which makes it as sure as it is right. A classifier gives a share to each class of a whole crop. YOLO's raw output and
-SSD's rows (image, class, confidence, box) give boxes; overlapping ones are thinned. Pictures are [row, column(, channel)]
+SSD's rows (image, class, confidence, box) give boxes; so do three outputs, "rcnn": boxes [n, 4] as left, top, right, bottom in
+pixels of the input, labels [n] and scores [n], in the order that "outputs" names. Overlapping boxes are thinned; the classes
+"nothing" and "background" are no finding. Pictures are [row, column(, channel)]
 as the cameras and sonars give them, RGB.
 """
 import json
+import multiprocessing
 import os
 import queue
+import re
 import threading
 import time
 
 import numpy as np
 
-from scenario import Failed, Refused
+import onnx_network
+from scenario import Failed, Refused, check_keys
 
-KINDS = ("classifier", "yolo5", "yolo8", "ssd")
+KINDS = ("classifier", "yolo5", "yolo8", "ssd", "rcnn")
+OUTPUTS = ("boxes", "labels", "scores")
+NO_FINDING = ("nothing", "background")
+# made_by, share_of_crops_to_choose_by and note are for readers.
+KEYS = ("kind", "classes", "side", "channels", "normalise", "mirror", "with", "looks", "power", "outputs", "made_by",
+        "share_of_crops_to_choose_by", "note")
+CHECK_S = 120.0  # in which a network must have looked once
+FORKS = multiprocessing.get_context("fork")
 
 
 def normalised(pixels):
@@ -46,6 +58,7 @@ def _described(about):
             told = json.load(file)
         if not isinstance(told, dict):
             raise TypeError("no object")
+        check_keys(about, told, KEYS)
         return told
     except (ValueError, TypeError, OSError) as error:
         raise Refused(f"{about}: found no description ({error!r}); accepted: kind, classes, side, normalise") from None
@@ -70,13 +83,20 @@ class Detector:
             raise Failed("detector: no OpenCV here; tools/setup detector installs python3-opencv") from None
         self._cv2, about = cv2, files_of(path)[1]
         self.about = _described(about)
-        try:
-            self.kind, self.classes, self.side = self.about["kind"], list(self.about["classes"]), int(self.about["side"])
-        except (ValueError, KeyError, TypeError) as error:
-            raise Refused(f"{about}: found no description ({error!r}); accepted: kind, classes, side, normalise") from None
-        if self.kind not in KINDS or not 8 <= self.side <= 4096 or not self.classes:
-            raise Refused(f"{about}: found kind {self.kind!r}, side {self.side}, {len(self.classes)} classes; accepted: "
+        missing = [k for k in ("kind", "classes", "side") if k not in self.about]
+        if missing:
+            raise Refused(f"{about}: found no {missing[0]}; accepted: kind, classes and side, and more as README.md says")
+        self.kind, self.classes, self.side = (self.about[k] for k in ("kind", "classes", "side"))
+        if not isinstance(self.classes, list) or not all(isinstance(c, str) and c for c in self.classes) or len(set(self.classes)) < len(self.classes):
+            raise Refused(f"{about}: found classes {self.classes!r}; accepted: a list of words that differ")
+        if self.kind not in KINDS or type(self.side) is not int or not 8 <= self.side <= 4096 or not self.classes:
+            raise Refused(f"{about}: found kind {self.kind!r}, side {self.side!r}, {len(self.classes)} classes; accepted: "
                           f"{', '.join(KINDS)}; 8 to 4096; one or more")
+        self.channels, outputs = self.about.get("channels", 3), self.about.get("outputs", list(OUTPUTS))
+        if self.channels not in (1, 3) or isinstance(self.channels, bool):
+            raise Refused(f"{about}: found channels {self.channels!r}; accepted: 1, 3")
+        if not isinstance(outputs, list) or sorted(map(str, outputs)) != sorted(OUTPUTS) or ("outputs" in self.about and self.kind != "rcnn"):
+            raise Refused(f"{about}: found outputs {outputs!r} of kind {self.kind}; accepted: of kind rcnn, {', '.join(OUTPUTS)} in the file's order")
         self.normalise, self.mirror = self.about.get("normalise", "crop"), self.about.get("mirror", False)
         self.looks = self.about.get("looks", 1)
         if self.normalise not in ("crop", "none") or not isinstance(self.mirror, bool) or type(self.looks) is not int or not 1 <= self.looks <= 64:
@@ -96,6 +116,13 @@ class Detector:
             self._net.setPreferableBackend(cv2.dnn.DNN_BACKEND_OPENCV)
         except cv2.error as error:
             raise Refused(f"{path}: found a network that OpenCV cannot read ({_line(error)}); accepted: ONNX of its layers") from None
+        names = onnx_network.outputs_of(path)
+        if self.kind == "rcnn":
+            if len(names) != 3:
+                raise Refused(f"{path}: found {len(names)} outputs ({', '.join(names)}); accepted: three of kind rcnn, {', '.join(OUTPUTS)}")
+            self._named = dict(zip(outputs, names))
+        else:
+            self._named = {"all": names[0]} if len(names) > 1 else None  # as YOLOv5's, whose other outputs are of its heads
 
     def _blob(self, pixels):
         x = self._cv2.resize(pixels, (self.side, self.side), interpolation=self._cv2.INTER_AREA) \
@@ -106,7 +133,10 @@ class Detector:
     def forward(self, pixels):
         try:
             self._net.setInput(self._blob(pixels))
-            return np.asarray(self._net.forward())
+            if self._named is None:
+                return np.asarray(self._net.forward())
+            told = dict(zip(self._named, self._net.forward(list(self._named.values()))))
+            return np.asarray(told["all"]) if "all" in told else told
         except self._cv2.error as error:
             raise Failed(f"detector: {_line(error)}") from None
 
@@ -134,9 +164,9 @@ class Detector:
             shares = self.shares(pixels)
             best = int(shares.argmax())
             name = self.classes[best]
-            return [] if name == "nothing" or shares[best] < least else [(name, float(shares[best]), (0, 0, wide, high))]
+            return [] if name in NO_FINDING or shares[best] < least else [(name, float(shares[best]), (0, 0, wide, high))]
         rows = boxes_of(self.kind, self.forward(pixels), len(self.classes), self.side)
-        rows = [r for r in rows if r[1] >= least]
+        rows = [r for r in rows if r[1] >= least and self.classes[r[0]] not in NO_FINDING]
         chosen = self._cv2.dnn.NMSBoxes([list(r[2]) for r in rows], [r[1] for r in rows], least, overlap) if rows else []
         scale = (wide / self.side, high / self.side) * 2
         return [(self.classes[rows[i][0]], rows[i][1], tuple(float(v * s) for v, s in zip(rows[i][2], scale)))
@@ -144,7 +174,16 @@ class Detector:
 
 
 def boxes_of(kind, out, classes, side):
-    """[(class, confidence, (left, top, width, height) in pixels of the network's input)] of a raw output."""
+    """[(class, confidence, (left, top, width, height) in pixels of the network's input)] of a raw output; of kind rcnn of
+    {"boxes", "labels", "scores"}."""
+    if kind == "rcnn":
+        boxes, labels, scores = (np.asarray(out[k], float) for k in OUTPUTS)
+        n = labels.size
+        if boxes.size != 4 * n or scores.size != n or not np.array_equal(labels, np.round(labels)) or not ((scores >= 0) & (scores <= 1)).all():
+            raise Failed(f"detector: found boxes {boxes.shape}, labels {labels.shape}, scores {scores.shape}; accepted: n x 4, n whole "
+                         "numbers, n in [0, 1], in the order that outputs names")
+        return [(int(k), float(s), (b[0], b[1], b[2] - b[0], b[3] - b[1]))
+                for b, k, s in zip(boxes.reshape(n, 4).tolist(), labels.ravel(), scores.ravel()) if 0 <= k < classes]
     if kind == "ssd":  # [1, 1, n, 7]: image, class, confidence, left, top, right, bottom as shares of the picture
         rows = out.reshape(-1, 7)
         return [(int(r[1]), float(r[2]), (r[3] * side, r[4] * side, (r[5] - r[3]) * side, (r[6] - r[4]) * side))
@@ -161,8 +200,56 @@ def boxes_of(kind, out, classes, side):
             for r, s, b in zip(rows, share, best)]
 
 
+def check(path, channels):
+    """(kind, classes, looks) of a detector that can look: it looks at a grey picture of so many channels, in a process of its own,
+    since OpenCV's threads do not outlive a fork, and broken files may end it. Refused where it cannot."""
+    key = (channels, *((f, os.stat(f).st_mtime_ns, os.stat(f).st_size) for f in files_of(path)))
+    if key not in _CHECKED:
+        ours, theirs = FORKS.Pipe(duplex=False)
+        process = FORKS.Process(target=_look_once, args=(path, channels, theirs), daemon=True)
+        process.start()
+        theirs.close()
+        try:
+            told = ours.recv() if ours.poll(CHECK_S) else Refused(f"{path}: found a network that did not look within {CHECK_S:g} s; accepted: a faster one")
+        except EOFError:
+            told = Refused(f"{path}: found a network that ends OpenCV; accepted: ONNX of its layers")
+        process.kill()
+        process.join()
+        ours.close()
+        if isinstance(told, Exception):
+            raise told
+        _CHECKED[key] = told
+    return _CHECKED[key]
+
+
+_CHECKED = {}  # what was told of files as they were
+
+
+def _look_once(path, channels, pipe):
+    with open(os.devnull, "w") as nowhere:
+        os.dup2(nowhere.fileno(), 2)  # OpenCV's own lines: what it found is told in one
+    try:
+        one = Detector(path)
+        if one.channels != channels:
+            raise Refused(f"{path}: found channels {one.channels}; accepted: {channels} here")
+        picture = np.full((one.side, one.side, channels)[:2 if channels == 1 else 3], 127, np.uint8)
+        try:
+            one.look(np.stack([picture] * one.looks) if one.looks > 1 else picture)
+        except Failed as error:
+            raise Refused(f"{path}: {str(error).removeprefix('detector: ')}") from None
+        pipe.send((one.kind, one.classes, one.looks))
+    except (Refused, Failed) as error:
+        pipe.send(error)
+    except Exception as error:
+        pipe.send(Refused(f"{path}: found a network that cannot look ({type(error).__name__}: {_line(error)}); accepted: ONNX as README.md says"))
+
+
 def _line(error):
-    return str(error).strip().splitlines()[0][:160]
+    """What an error says, without the place in OpenCV's own files."""
+    missing = re.search(r'of type "(\w+)"', str(error))
+    if missing:
+        return f"it has no layer {missing[1]}"
+    return re.sub(r"^OpenCV\S* \S+:\d+: error: ", "", str(error).strip().splitlines()[0])[:160]
 
 
 class Looker:

@@ -113,6 +113,19 @@ def read(path):
         raise Refused(f"{path}: found no ONNX network ({error}); accepted: one that train_camera or train_sonar wrote") from None
 
 
+def outputs_of(path):
+    """The names of a network's outputs, in the file's order."""
+    with open(path, "rb") as file:
+        data = file.read()
+    try:
+        names = [dict(_fields(v))[1].decode() for f, v in _fields(dict(_fields(data))[7]) if f == 12]
+    except (ValueError, KeyError, IndexError, TypeError, AttributeError) as error:
+        raise Refused(f"{path}: found no ONNX network ({error!r}); accepted: a detector's .onnx") from None
+    if not names:
+        raise Refused(f"{path}: found a network without outputs; accepted: a detector's .onnx")
+    return names
+
+
 def module_of(torch, path):
     """The network of a file: crops to logits, with `last` as its last layer."""
     nodes, arrays = read(path)

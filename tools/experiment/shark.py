@@ -15,7 +15,7 @@ import looking
 import shark_person
 from detector import model_of
 from rotations import matrix
-from scenario import Failed, Setting, draw
+from scenario import Failed, Refused, Setting, draw
 from shark_figures import figures, notes  # noqa: F401: of the kind
 from shark_scene import Judge, scene_of, shark_at
 from shark_senses import DIVER, Gaze, SonarTrack
@@ -285,8 +285,13 @@ def files(settings):
 
 
 def check(settings):
-    """Refuses a detector that is not there, before anything runs."""
-    files(settings)
+    """Refuses a detector that is not there, cannot look or knows no shark, before anything runs."""
+    if settings["detector"] == "assumed":
+        return
+    path = model_of(settings["detector"])
+    _, classes, looks = looking.check(path, 3)
+    if "shark" not in classes or looks != 1:
+        raise Refused(f"{path}: found a detector of {', '.join(classes)}, {looks} looks; accepted: one with a class shark, 1 look")
 
 
 def alone(settings):
