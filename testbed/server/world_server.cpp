@@ -207,9 +207,9 @@ Status WorldServer::wish_images(std::uint32_t stream) {
 Status WorldServer::image(const Ask& ask, Answer& answer) {
   NERITIC_TRY(const std::uint32_t stream, world_.stream(ask.request.stream));
   auto& clients = wishes_[stream];
-  if (ask.request.on)
   // Another's wish would hide a rate that is refused.
   if (ask.request.on) NERITIC_TRY_STATUS(world_.check_image(stream, ask.request.rate_hz));
+  if (ask.request.on)
     clients[ask.client] = {ask.request.rate_hz, ask.request.keep};
   else if (clients.erase(ask.client) == 0)
     return {};
