@@ -89,7 +89,7 @@ struct ModemMessage {
 // The fate of a message at a modem: at its sender, or at one that it was for.
 enum class ModemEvent : std::uint64_t {
   kSent,
-  kRefused,  // the modem was sending, or the message was too long
+  kRefused,  // the modem was sending, the message was too long, or kFlying travelled already
   kReceived,
   // Lost, by the cause.
   kTooWeak,
@@ -118,7 +118,7 @@ struct ModemReport {
 
 // The fate of messages at a modem, counted since the start.
 struct ModemCounts {
-  std::uint64_t sent = 0, refused = 0;  // refused: it was sending, or the message was too long
+  std::uint64_t sent = 0, refused = 0;  // refused: see kRefused
   std::uint64_t received = 0;
   std::uint64_t too_weak = 0, noisy = 0, collided = 0, was_sending = 0;  // lost, by their cause
 
@@ -140,7 +140,9 @@ struct ModemCounts {
 
 // One modem's part of the channel: plain numbers, which a simulation's state can hold.
 struct ModemState {
-  static constexpr std::size_t kFlying = 4, kHearing = 8, kKept = 16;
+  // kFlying: that travel at once. A modem of the default settings sends 8 bytes in 0.18 s, so that
+  // their sound may travel for 5.7 s, 8.5 km, before one more is refused.
+  static constexpr std::size_t kFlying = 32, kHearing = 8, kKept = 16;
   struct Flight {  // a message on its way
     ModemMessage message;
     double sent_s = 0.0, ends_s = 0.0;  // at the sender

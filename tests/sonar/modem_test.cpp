@@ -130,6 +130,36 @@ TEST(Modem, TwoAtOnceCollideAndAMuchNearerOneIsHeard) {
   EXPECT_EQ(near.states[1].counts.collided, 1u);
 }
 
+// Eight bytes every 0.3 s over 3.5 km: each is whole before the next one, and eight travel at once.
+TEST(Modem, AFarModemSendsOneMessageAfterTheOther) {
+  Sea sea({{0, 0, 5}, {3500, 0, 5}});
+  for (ModemSettings& modem : sea.modems) modem.source_level_db = 200.0, modem.fading = false;
+  const double travel_s = modem_travel_s(sea.water, sea.positions[0], sea.positions[1]);
+  EXPECT_GT(travel_s, 7 * 0.3);
+  for (int i = 0; i < 16; ++i) {
+    EXPECT_TRUE(sea.say(0, 1, 8, 0.3 * i)) << i;
+    sea.run(0.3 * i, 0.3 * (i + 1));
+  }
+  EXPECT_EQ(sea.states[0].counts.refused, 0u);
+  sea.run(16 * 0.3, 10.0);
+  EXPECT_EQ(sea.states[1].counts.received, 16u);
+}
+
+// Beyond the sound's longest way for which there is room it refuses, until a message is over.
+TEST(Modem, NoMoreTravelAtOnceThanThereIsRoomFor) {
+  Sea sea({{0, 0, 5}, {30000, 0, 5}});
+  const double travel_s = modem_travel_s(sea.water, sea.positions[0], sea.positions[1]);
+  ASSERT_GT(travel_s, 34 * 0.3);
+  for (std::size_t i = 0; i < ModemState::kFlying + 2; ++i) {
+    const double now_s = 0.3 * static_cast<double>(i);
+    EXPECT_EQ(sea.say(0, 1, 8, now_s), i < ModemState::kFlying) << i;
+    sea.run(now_s, now_s + 0.3);
+  }
+  EXPECT_EQ(sea.states[0].counts.refused, 2u);
+  sea.run(0.3 * (ModemState::kFlying + 2), travel_s + 0.4);
+  EXPECT_TRUE(sea.say(0, 1, 8, travel_s + 0.4));
+}
+
 TEST(Modem, WhileItSendsItIsDeafAndCannotSendAgain) {
   Sea sea({{0, 0, 5}, {300, 0, 5}});
   ASSERT_TRUE(sea.say(0, 1, 20, 0.0));

@@ -46,7 +46,7 @@ class Agent:
         """Sends up to 64 bytes by sound with the next step, to one agent's modem or to all (None). The message
         arrives later or is lost: the other agent's receive() returns it, and readings of NAME/modem tell
         what became of it (event: MODEM_EVENTS). A step handles four messages, up to 32 wait; those that
-        come while the modem sends are refused."""
+        come while the modem sends, or while 32 of its messages travel, are refused."""
         try:
             data = data.encode() if isinstance(data, str) else bytes(memoryview(data))
         except (TypeError, UnicodeEncodeError):
