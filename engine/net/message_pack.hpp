@@ -3,6 +3,8 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string_view>
 
 #include "engine/core/result.hpp"
 #include "engine/net/wire_bytes.hpp"
@@ -20,6 +22,10 @@ struct PackLimits {
 // A map, whose texts may be any bytes and whose numbers may be NaN or infinite. kBadInput:
 // "MessagePack: found ...; accepted: ...".
 Result<nlohmann::json> unpack(Bytes bytes, const PackLimits& limits = {});
+// The whole number under a key of the map, also of one that unpack() refuses, so that a refusal can
+// say which message it answers. Absent: not found before bytes that do not read or lie too deep.
+std::optional<std::uint64_t> number_under(Bytes bytes, std::string_view key,
+                                          const PackLimits& limits = {});
 std::vector<std::byte> pack(const nlohmann::json& value);
 
 }  // namespace neritic::net

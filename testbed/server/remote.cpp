@@ -105,8 +105,8 @@ Result<Remote::Reply> Remote::call(json map, const std::vector<net::Bytes>& arra
     Reply reply{{}, std::move(*got)};
     NERITIC_TRY(reply.map,
                 net::unpack(reply.frames.front(), {.bytes = 4 << 20, .values = 1 << 20}));
-    if (number_in(reply.map, "id", ~std::uint64_t{0}) != id)
-      continue;  // of a request given up before
+    const std::uint64_t of = number_in(reply.map, "id", ~std::uint64_t{0});
+    if (of != id && of != 0) continue;  // of a request given up before
     const auto ok = reply.map.find("ok");
     if (ok != reply.map.end() && ok->is_boolean() && ok->get<bool>()) return reply;
     const auto line = reply.map.find("error");

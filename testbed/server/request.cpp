@@ -216,15 +216,18 @@ std::string_view name_of(Op op) {
   return kNames.at(static_cast<std::size_t>(op));
 }
 
-Result<Request> parse_request(const std::vector<net::Bytes>& frames, std::uint64_t& id_out) {
-  id_out = 0;
+Result<Request> parse_request(const std::vector<net::Bytes>& frames,
+                              std::optional<std::uint64_t>& id_out) {
+  constexpr net::PackLimits kLimits{.bytes = 64 << 10, .values = 1024};
+  id_out.reset();
+  if (!frames.empty()) id_out = net::number_under(frames[0], "id", kLimits);
   if (frames.empty() || frames.size() > 2)
     return refusal("request", fmt::format("{} frames", frames.size()),
                    "a map, and the bytes of a state after restore");
-  NERITIC_TRY(const json map, net::unpack(frames[0], {.bytes = 64 << 10, .values = 1024}));
-  if (const auto id = map.find("id"); id != map.end() && id->is_number_unsigned())
-    id_out = id->get<std::uint64_t>();
-  else if (id != map.end())
+  NERITIC_TRY(const json map, net::unpack(frames[0], kLimits));
+  if (const auto id = map.find("id"); id == map.end())
+    id_out = 0;
+  else if (!id_out)
     return refusal("request: id", shown(*id), "a whole number");
   const auto op = map.find("op");
   const auto at = op != map.end() && op->is_string()
@@ -233,7 +236,7 @@ Result<Request> parse_request(const std::vector<net::Bytes>& frames, std::uint64
   if (at == kNames.end())
     return refusal("request: op", op == map.end() ? "nothing" : shown(*op),
                    fmt::format("{}", fmt::join(kNames, ", ")));
-  Request request{.op = static_cast<Op>(at - kNames.begin()), .id = id_out};
+  Request request{.op = static_cast<Op>(at - kNames.begin()), .id = *id_out};
   Keys keys(*at, map);
   read_keys(keys, request);
   NERITIC_TRY_STATUS(keys.end());

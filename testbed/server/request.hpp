@@ -67,7 +67,6 @@ struct Request {
 };
 
 // The first frame is the map, a second one the bytes of a state. kBadInput: "OP: KEY: found ...;
-// accepted: ...". id_out: the request's number, where it can be read, for the refusal.
-Result<Request> parse_request(const std::vector<net::Bytes>& frames, std::uint64_t& id_out);
+// X
 
 }  // namespace neritic::testbed

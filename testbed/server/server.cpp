@@ -92,11 +92,13 @@ class Server::Network {
   void answer(const Answer& answer);
   void end_observing(TimeNs now);
   enum class Known { kYes, kNo };
-  void refuse(ClientId id, std::uint64_t request, const std::string& line,
+  // request: absent if its number cannot be read; 0: it wants no answer.
+  void refuse(ClientId id, std::optional<std::uint64_t> request, const std::string& line,
               Known known = Known::kYes);
   // Sends the map with the client's mail.
   void deliver(ClientId id, Client& client, json map, Outgoing message, bool mail);
   void send(ClientId id, const json& map, Outgoing message);
+  void transmit(ClientId id, const json& map, Outgoing message);
 
   const ServedFacts facts_;
   HandOff& hand_off_;
@@ -137,7 +139,7 @@ void Server::Network::hear(const net::ClientMessage& message) {
   Client& client = clients_[message.client];
   if (client.name.empty())
     client.name = message.name.empty() ? std::string(kUnnamed) : std::string(message.name);
-  std::uint64_t id = 0;
+  std::optional<std::uint64_t> id;
   auto request = parse_request(message.frames, id);
   if (!request.ok()) return refuse(message.client, id, request.error().message);
   if (!client.greeted && request->op != Op::kHello)
@@ -155,12 +157,13 @@ void Server::Network::gone(ClientId client) {
     left_.push_back({.sort = Ask::Sort::kGone, .client = client, .name = {}, .request = {}});
 }
 
-void Server::Network::refuse(ClientId id, std::uint64_t request, const std::string& line,
-                             Known known) {
+void Server::Network::refuse(ClientId id, std::optional<std::uint64_t> request,
+                             const std::string& line, Known known) {
   ++counts_.refused;
-  json map{{"id", request}, {"ok", false}, {"error", line}};
+  if (request == 0u) return;
+  json map{{"id", request.value_or(0)}, {"ok", false}, {"error", line}};
   if (known == Known::kNo) map["unknown"] = true;
-  send(id, map, {{{}}});
+  transmit(id, map, {{{}}});
 }
 
 void Server::Network::greet(ClientId id, Client& client, const Request& request) {
@@ -354,9 +357,13 @@ void Server::Network::deliver(ClientId id, Client& client, json map, Outgoing me
   send(id, map, std::move(message));
 }
 
-// The first of the message's frames is the map's place.
+// Unless it is for a request that wants no answer.
 void Server::Network::send(ClientId id, const json& map, Outgoing message) {
-  if (map.at("id") == 0) return;
+  if (map.at("id") != 0) transmit(id, map, std::move(message));
+}
+
+// The first of the message's frames is the map's place.
+void Server::Network::transmit(ClientId id, const json& map, Outgoing message) {
   message.frames.front() = net::pack(map);
   std::vector<net::Bytes> frames(message.frames.begin(), message.frames.end());
   (void)socket_->send(id, frames);  // one that is lost is counted

@@ -14,7 +14,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
       size > 0 && data[0] < 128 ? std::min<std::size_t>(data[0], size - 1) : 0;
   std::vector<net::Bytes> frames{bytes.subspan(0, size - state)};
   if (state > 0) frames.push_back(bytes.subspan(size - state));
-  std::uint64_t id = 0;
+  std::optional<std::uint64_t> id;
   const auto request = parse_request(frames, id);
   if (!request.ok()) {
     const std::string& message = request.error().message;

@@ -249,6 +249,45 @@ TEST_F(ServerTest, WhoDoesNotGreetIsNotHeard) {
 
 TEST_F(ServerTest, AClientWithManyRequestsIsRefusedBeyondABoundAndTheOthersGoOn) {
   serve();
+TEST_F(ServerTest, EachRequestThatIsNoneIsRefusedInAnAnswer) {
+  serve();
+  const auto remote = client();
+  const std::vector<double> many(5000, 1.0);
+  EXPECT_THAT(
+      refused(*remote, {{"op", "command"}, {"agent", "rov"}, {"kind", "pwm"}, {"values", many}}),
+      testing::HasSubstr("found more than 1024 values"));
+  EXPECT_THAT(refused(*remote, {{"op", "record"}, {"name", std::string(1 << 17, 'a')}}),
+              testing::HasSubstr("bytes; accepted: up to 65536"));
+  json deep = json::array();
+  for (int i = 0; i < 20; ++i) deep = json::array({deep});
+  EXPECT_THAT(refused(*remote, {{"op", "tick"}, {"steps", deep}}),
+              testing::HasSubstr("maps and lists in each other"));
+  const std::vector<std::byte> more(4);
+  EXPECT_FALSE(remote->call({{"op", "save"}}, {more, more}).ok());
+  const auto socket = net::ClientSocket::connect({.address = server_->address()}).value();
+  const auto answer = [&](std::vector<std::byte> bytes) -> json {
+    socket->send({std::move(bytes)});
+    const auto frames = socket->receive(5000);
+    return frames ? net::unpack(frames->front()).value() : json();
+  };
+  // Each has one answer, in order: that of a number that can be read has it, any other has 0.
+  for (const auto& [bytes, id] : {std::pair(std::vector<std::byte>(7, std::byte{0xc1}), 0),
+                                  {{}, 0},
+                                  {net::pack({{"op", "hello"}, {"id", "one"}}), 0},
+                                  {net::pack({{"op", "hello"}, {"id", -3}}), 0},
+                                  {net::pack({{"op", "hello"}, {"id", 8}, {"protocol", many}}), 8},
+                                  {net::pack(json::array({1, 2})), 0}}) {
+    const json map = answer(bytes);
+    ASSERT_TRUE(map.is_object()) << id;
+    EXPECT_EQ(map.at("ok"), false);
+    EXPECT_EQ(map.at("id"), id);
+    EXPECT_FALSE(map.at("error").get<std::string>().empty());
+  }
+  // A request that wants no answer has none, whether it is refused or not.
+  socket->send({net::pack({{"op", "hello"}, {"id", 0}, {"protocol", many}})});
+  EXPECT_EQ(answer(net::pack({{"op", "hello"}, {"id", 9}, {"protocol", 1}})).at("id"), 9);
+}
+
   const auto other = client("bob");
   const auto flood = net::ClientSocket::connect({.address = server_->address()}).value();
   flood->send({net::pack({{"op", "hello"}, {"id", 1}, {"protocol", 1}})});

@@ -238,7 +238,7 @@ class Core:
                     raise Error(f"{self._address}: no answer in {self._patience + lasts:g} s: no server, "
                                 "one that is busy, or one with other keys")
                 answer = self._msgpack.unpackb(frames[0])
-                if answer.get("id") != self._next:
+                if answer.get("id") not in (0, self._next):  # 0: the server cannot read which one it refuses
                     if answer.get("ok") and "clock" in answer:
                         self._take(answer, frames)  # of a call that was given up, with what is new
                     continue
