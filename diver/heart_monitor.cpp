@@ -59,14 +59,30 @@ HeartMonitor::HeartMonitor(double rate_hz) : detector_(rate_hz), rate_hz_(rate_h
 }
 
 void HeartMonitor::push(std::span<const double> samples) {
+  push_at(samples, 0.0);
+}
+
+void HeartMonitor::push(std::span<const double> samples, double lasts_s) {
+  if (samples.empty()) return;
+  const double longer = lasts_s * rate_hz_ / static_cast<double>(samples.size()) - 1.0;
+  NERITIC_CHECK(std::abs(longer) <= kMostStretch, "{} samples in {} s", samples.size(), lasts_s);
+  push_at(samples, longer);
+}
+
+// longer: by this share of 1 / rate_hz_ each sample lasts longer than that.
+void HeartMonitor::push_at(std::span<const double> samples, double longer) {
   NERITIC_CHECK(detector_.has_value(), "a monitor of intervals has no ECG");
   for (const double sample : samples) {
+    shift_s_ += longer / rate_hz_;
     found_.clear();
     const std::uint64_t refused = detector_->counts().refused;
     detector_->push(sample, found_);
     const double missed = detector_->counts().refused > refused ? 1.0 : 0.0;
     missing_share_ += (missed - missing_share_) / (kMissing_s * rate_hz_);
-    for (const Beat& beat : found_) {
+    const double now_s = static_cast<double>(detector_->counts().samples) / rate_hz_;
+    for (Beat& beat : found_) {
+      // It lies some samples back.
+      beat.time_s += shift_s_ - longer * (now_s - beat.time_s);
       downward_ = downward_ << 1 | (beat.amplitude < 0.0 ? 1u : 0u);
       Interval interval = judge_.take(beat);
       interval.doubtful = judged() == SignalQuality::kPoor;
@@ -74,7 +90,7 @@ void HeartMonitor::push(std::span<const double> samples) {
     }
   }
   const EcgCounts& counts = detector_->counts();
-  state_.time_s = static_cast<double>(counts.samples) / rate_hz_;
+  state_.time_s = static_cast<double>(counts.samples) / rate_hz_ + shift_s_;
   state_.refused = counts.refused;
   state_.gaps = counts.gaps;
   state_.quality = judged();
@@ -133,7 +149,11 @@ void HeartMonitor::skip(double seconds) {
   if (detector_) {
     // Lost samples count as samples that are no numbers.
     const double missing[] = {std::nan("")};
-    for (double t = 0.0; t < seconds; t += 1.0 / rate_hz_) push(missing);
+    const auto count = static_cast<std::uint64_t>(std::ceil(seconds * rate_hz_));
+    for (std::uint64_t i = 0; i < count; ++i) push(missing);
+    // The last one lasts as long as is left.
+    const double less_s = static_cast<double>(count) / rate_hz_ - seconds;
+    shift_s_ -= less_s, state_.time_s -= less_s;
     return;
   }
   ++state_.gaps;

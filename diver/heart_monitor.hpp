@@ -57,6 +57,10 @@ class HeartMonitor {
   HeartMonitor() = default;
 
   void push(std::span<const double> samples);
+  // Samples that last so long by a clock that knows it better than the nominal rate: times and
+  // intervals are by that clock. Precondition: within kMostStretch of the nominal length.
+  void push(std::span<const double> samples, double lasts_s);
+  static constexpr double kMostStretch = 0.1;
   // An interval in seconds, oldest first; one outside 0.2 to 3 s is refused and counted,
   // and is a gap.
   void push_interval(double length_s);
@@ -68,6 +72,7 @@ class HeartMonitor {
   double doubtful_share() const;
 
  private:
+  void push_at(std::span<const double> samples, double longer);
   void take(const Interval& interval);
   SignalQuality judged() const;
   bool doubtful() const;
@@ -81,6 +86,7 @@ class HeartMonitor {
 
   std::optional<BeatDetector> detector_;
   double rate_hz_ = 0.0;
+  double shift_s_ = 0.0;        // the state's time less that of as many samples at rate_hz_
   double missing_share_ = 0.0;  // of the samples of late
   std::uint64_t downward_ = 0;  // bits of the last beats, the newest lowest
   IntervalJudge judge_;

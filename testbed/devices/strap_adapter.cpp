@@ -17,10 +17,18 @@ constexpr std::size_t kMostIntervals = 32;
 constexpr double kLongestGap_s = 3600.0, kRatePeriod_s = 1.0;
 // A strap's clock that falls so far back was set anew, and so was one that leaps.
 constexpr double kSetBack_s = 10.0, kLeap_s = 10.0;
+// The rate counts as nominal until so much was seen, and is that of the last kRateOver_s. Frames
+// whose length is off the nominal one by more than kOdd are not whole.
+constexpr double kLearn_s = 5.0, kRateOver_s = 120.0, kOdd = 0.05;
+// Frames' times jitter where a computer stamps them (LSL): by this share of what the monitor's time
+// is behind a frame is longer, at most by kMostPull of its length.
+constexpr double kPull = 0.1, kMostPull = 0.002;
 // A slow heart leaves packets without an interval; after so long without one the rate counts.
 constexpr TimeNs kIntervalCounts = 5 * kSecond_ns;
 // The rates of a heart that a strap can find; 0: it is not worn.
 constexpr int kLeastRate_bpm = 20, kMostRate_bpm = 300;
+
+static_assert(1.0 / (1.0 - kOdd) + kMostPull < 1.0 + diver::HeartMonitor::kMostStretch);
 
 }  // namespace
 
@@ -92,9 +100,23 @@ void StrapAdapter::take_rate(net::Bytes bytes, TimeNs arrived_ns, Outlet& out) {
   out.send(heart, arrived_ns, arrived_ns);
 }
 
-// Samples that are missing are none, so that no beat is found across the gap.
-void StrapAdapter::fill_gap(double gap_s) {
-  if (gap_s > 0.5 / net::kEcg_hz) ecg_->skip(std::min(gap_s, kLongestGap_s));
+void StrapAdapter::learn_rate(std::size_t samples, double length_s) {
+  seen_samples_ += static_cast<double>(samples);
+  seen_s_ += length_s;
+  if (seen_s_ < kRateOver_s) return;
+  seen_samples_ *= 0.5, seen_s_ *= 0.5;
+}
+
+double StrapAdapter::rate_hz() const {
+  return seen_s_ < kLearn_s ? net::kEcg_hz : seen_samples_ / seen_s_;
+}
+
+// By the learnt rate, and nearer to the strap's clock.
+double StrapAdapter::lasts_s(std::size_t samples) {
+  const double length_s = static_cast<double>(samples) / rate_hz();
+  const double pull_s = std::clamp(kPull * behind_s_, -kMostPull * length_s, kMostPull * length_s);
+  behind_s_ -= pull_s;
+  return length_s + pull_s;
 }
 
 void StrapAdapter::take_ecg(net::Bytes bytes, TimeNs arrived_ns, Outlet& out) {
@@ -103,7 +125,8 @@ void StrapAdapter::take_ecg(net::Bytes bytes, TimeNs arrived_ns, Outlet& out) {
     ++(frame.error().code == ErrorCode::kUnsupported ? counts_.unused : counts_.malformed);
     return;
   }
-  const double length_s = static_cast<double>(frame->samples_uv.size()) / net::kEcg_hz;
+  const std::size_t count = frame->samples_uv.size();
+  const double length_s = static_cast<double>(count) / rate_hz();
   if (last_ecg_ns_) {
     const double step_s =
         1e-9 * static_cast<double>(static_cast<std::int64_t>(frame->time_ns - *last_ecg_ns_));
@@ -120,21 +143,29 @@ void StrapAdapter::take_ecg(net::Bytes bytes, TimeNs arrived_ns, Outlet& out) {
       ecg_.reset();
     } else if (step_s > 1.5 * length_s) {
       counts_.lost += static_cast<std::uint64_t>(std::lround(step_s / length_s - 1.0));
-      fill_gap(step_s - length_s);
+      // Samples that are missing are none, so that no beat is found across the gap.
+      ecg_->skip(std::min(step_s - length_s, kLongestGap_s));
+    } else if (const double nominal_s = static_cast<double>(count) / net::kEcg_hz;
+               std::abs(step_s - nominal_s) <= kOdd * nominal_s) {
+      if (seen_s_ >= kLearn_s) behind_s_ += step_s - length_s;
+      learn_rate(count, step_s);
     }
   }
-  if (!ecg_) ecg_.emplace(net::kEcg_hz);
+  if (!ecg_) {
+    ecg_.emplace(net::kEcg_hz);
+    behind_s_ = 0.0;
+  }
   last_ecg_ns_ = frame->time_ns;
   ecg_ns_ = arrived_ns;
   const std::vector<double> samples(frame->samples_uv.begin(), frame->samples_uv.end());
-  ecg_->push(samples);
+  ecg_->push(samples, lasts_s(count));
   const auto sent_ns = static_cast<TimeNs>(frame->time_ns & INT64_MAX);
   clock_.add(sent_ns, arrived_ns);
   // The stamp is the last sample's.
   if (signal_ && !samples.empty())
     signal_->push(clock_.to_host(sent_ns) -
-                      std::llround(1e9 * static_cast<double>(samples.size() - 1) / net::kEcg_hz),
-                  net::kEcg_hz, {samples.begin(), samples.end()});
+                      std::llround(1e9 * static_cast<double>(samples.size() - 1) / rate_hz()),
+                  rate_hz(), {samples.begin(), samples.end()});
   out.send(Heart{ecg_->state()}, clock_.to_host(sent_ns), arrived_ns);
 }
 

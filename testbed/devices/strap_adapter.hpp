@@ -1,7 +1,7 @@
-// A heart strap as a diver's heart: its ECG (Polar's measurement data) or, without one, the
-// intervals that it counts itself (0x2A37), or the rate alone: that of packets which had no
-// interval for five seconds. A rate that is neither 0 nor 20 to 300 is malformed. The thread of the
-// device.
+// A heart strap as a diver's heart: its ECG (Polar's measurement data), whose rate is learnt from
+// the frames' own times, or, without one, the intervals that it counts itself (0x2A37), or the rate
+// alone: that of packets which had no interval for five seconds. A rate that is neither 0 nor 20 to
+// 300 is malformed. The thread of the device.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,9 @@ class StrapAdapter final : public DeviceAdapter {
   void receive(net::Bytes bytes, bool cut, TimeNs arrived_ns, Outlet& out) override;
   void take_rate(net::Bytes bytes, TimeNs arrived_ns, Outlet& out);
   void take_ecg(net::Bytes bytes, TimeNs arrived_ns, Outlet& out);
-  void fill_gap(double gap_s);
+  void learn_rate(std::size_t samples, double length_s);
+  double rate_hz() const;
+  double lasts_s(std::size_t samples);
 
   diver::HeartMonitor intervals_;
   std::optional<diver::HeartMonitor> ecg_;
@@ -31,6 +33,9 @@ class StrapAdapter final : public DeviceAdapter {
   std::vector<std::byte> last_rate_;
   std::optional<std::uint64_t> last_ecg_ns_;  // by the strap's clock
   SignalQueue* signal_ = nullptr;
+  // Samples of late and how long they lasted by the strap's clock, from which its rate is learnt,
+  // and by how much the monitor's time lags behind that clock.
+  double seen_samples_ = 0.0, seen_s_ = 0.0, behind_s_ = 0.0;
 };
 
 }  // namespace neritic::testbed

@@ -72,11 +72,12 @@ class SimulatedSuit final : public SimulatedDevice {
   std::uint32_t sample_ = 0;
 };
 
-// A Polar H10: ECG frames of 73 samples, and a rate with intervals each second.
+// A Polar H10: ECG frames of 73 samples, and a rate with intervals each second. Its samples come at
+// a rate of its own, as one that was measured had.
 class SimulatedStrap final : public SimulatedDevice {
  public:
   explicit SimulatedStrap(const SimulatedDeviceOptions& options)
-      : options_(options), samples_(net::kEcg_hz), seconds_(1.0) {}
+      : options_(options), samples_(kRate_hz), seconds_(1.0) {}
   void run(const PersonActs& acts, TimeNs now_ns, const Send& send) override {
     const TimeNs device_ns = options_.clock.at(now_ns) + kEpoch_ns;
     const auto host = [&](TimeNs at_ns) { return options_.clock.host(at_ns - kEpoch_ns, now_ns); };
@@ -96,6 +97,7 @@ class SimulatedStrap final : public SimulatedDevice {
   // 2026-01-01 since 2000-01-01.
   static constexpr TimeNs kEpoch_ns = TimeNs{9497} * 86'400 * kS;
   static constexpr std::size_t kFrame = 73;
+  static constexpr double kRate_hz = 130.16;
 
   // Bumps of P, Q, R, S and T about the R peak: place and width in s, height in uV (shape after
   // McSharry 2003, IEEE Trans. Biomed. Eng. 50, 289).
@@ -116,13 +118,13 @@ class SimulatedStrap final : public SimulatedDevice {
   void sample(const PersonActs& acts, TimeNs at_ns, TimeNs host_ns, const Send& send) {
     if (options_.recording) {
       const auto& samples = options_.recording->samples;
-      const auto i = static_cast<std::size_t>(static_cast<double>(count_) / net::kEcg_hz *
+      const auto i = static_cast<std::size_t>(static_cast<double>(count_) / kRate_hz *
                                               options_.recording->rate_hz);
       const double uv = samples[i % samples.size()];
       frame_.samples_uv.push_back(std::isfinite(uv) ? static_cast<std::int32_t>(uv) : 0);
     } else {
       const double period_s = 60.0 / acts.heart_bpm;
-      since_beat_s_ += 1.0 / net::kEcg_hz;
+      since_beat_s_ += 1.0 / kRate_hz;
       if (since_beat_s_ >= beat_s_) {
         intervals_.push_back(static_cast<std::uint16_t>(std::lround(beat_s_ / net::kRrUnit_s)));
         since_beat_s_ -= beat_s_;

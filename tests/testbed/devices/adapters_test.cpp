@@ -265,6 +265,58 @@ TEST(StrapAdapter, ItsEcgIsGivenToWhoeverRecordsIt) {
   EXPECT_GT(largest_uv, 300.0F);  // an R wave
 }
 
+// A heart that beats each 0.8 s, at a strap whose samples come at a rate of its own: frames of 73,
+// the time of each that of its last sample, which jitters where a computer says it. Samples by the
+// nominal rate would be off by 0.12 % and more. Some frames are lost.
+TEST(StrapAdapter, AnEcgKeepsTheTimeOfItsStrap) {
+  constexpr std::size_t kFrame = 73;
+  constexpr double kBeat_s = 0.8;
+  for (const auto& [rate_hz, jitter_s, loss] : {std::tuple(130.16, 0.0, 0.0),
+                                                {130.16, 0.0, 0.05},
+                                                {127.0, 0.0, 0.05},
+                                                {130.3, 2e-3, 0.0}}) {
+    Bench bench("strap = \"strap udp\"\n");
+    StrapAdapter strap;
+    net::EcgFrame frame;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> any(0.0, 1.0);
+    double worst_bpm = 0.0, worst_s = 0.0, first_off_s = 0.0;
+    std::size_t lost = 0, heard = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(180.0 * rate_hz); ++i) {
+      const double t_s = static_cast<double>(i) / rate_hz;
+      const double to_beat_s = std::remainder(t_s - 0.4, kBeat_s);
+      frame.samples_uv.push_back(static_cast<std::int32_t>(
+          1000.0 * std::exp(-0.5 * std::pow(to_beat_s / 0.015, 2)) + 10.0 * any(random)));
+      if (frame.samples_uv.size() < kFrame) continue;
+      frame.time_ns = static_cast<std::uint64_t>(
+          std::llround(1e9 * (1000.0 + t_s + jitter_s * (any(random) - 0.5))));
+      if (any(random) >= loss)
+        strap.take(net::encode_ecg(frame), false, static_cast<TimeNs>(1e9 * (2000.0 + t_s)),
+                   bench.out);
+      else
+        ++lost;
+      frame.samples_uv.clear();
+      for (const Sample& sample : bench.samples()) {
+        const diver::HeartState& heart = std::get<Heart>(sample.payload).state;
+        const double off_s = heart.time_s - t_s;
+        if (t_s < 60.0) {
+          first_off_s = off_s;
+          continue;
+        }
+        worst_s = std::max(worst_s, std::abs(off_s - first_off_s));
+        if (heart.rate_bpm == 0.0) continue;  // after a gap
+        ++heard;
+        worst_bpm = std::max(worst_bpm, std::abs(heart.rate_bpm - 60.0 / kBeat_s));
+      }
+    }
+    EXPECT_GT(heard, 150u) << rate_hz;
+    EXPECT_LT(worst_bpm, jitter_s > 0.0 || rate_hz < 128.0 ? 0.1 : 0.04)
+        << rate_hz << " Hz, loss " << loss;
+    EXPECT_LT(worst_s, 0.005) << rate_hz << " Hz, loss " << loss;
+    EXPECT_EQ(strap.counts().lost > 0, lost > 0);
+  }
+}
+
 TEST(JacketAdapter, AllFormsPress) {
   Bench bench("jacket = \"jacket udp\"\n");
   JacketAdapter jacket;
