@@ -767,6 +767,74 @@ class Report(unittest.TestCase):
         self.assertEqual([report.setting(told, k) for k in told["settings"]], ["0 / 5", "4 to 8", "IB"])
 
 
+class Figures(unittest.TestCase):
+    """Each condition is drawn, or what is left out is told."""
+
+    def setUp(self):
+        sys.path.insert(0, os.path.join(TOOLS, "..", "plot"))
+        try:
+            import style
+        except ModuleNotFoundError:
+            self.skipTest("no matplotlib here")
+        self.style = style
+
+    def drawn(self, figures, scenario, conditions, series, measures):
+        results = [{"condition": c, "seed": seed, "settings": c, "measures": measures(seed), "failure": None, "series": series}
+                   for c in conditions for seed in (1, 2)]
+        out = {}
+        for name, alt, fig in figures(scenario, results, self.style):
+            fig.canvas.draw()
+            out[name] = fig, alt, [t.get_text() for ax in fig.axes for t in (ax._left_title, *ax.get_yticklabels(), *ax.texts)]
+            self.assert_apart(fig)
+        return out
+
+    def assert_apart(self, fig):
+        """No panel with its labels lies over another, nor off the picture's edge."""
+        boxes = [ax.get_tightbbox(fig.canvas.get_renderer()) for ax in fig.axes]
+        for i, a in enumerate(boxes):
+            self.assertTrue(a.x0 >= 0 and a.x1 <= fig.bbox.x1 + 1 and a.y0 >= 0 and a.y1 <= fig.bbox.y1, a)
+            for b in boxes[:i]:
+                self.assertFalse(a.x0 < b.x1 - 1 and b.x0 < a.x1 - 1 and a.y0 < b.y1 - 1 and b.y0 < a.y1 - 1, (a, b))
+
+    def test_of_the_shark(self):
+        import shark_figures
+        series = {"t": [0.0, 1.0, 2.0], "beside": [3.0, 1.0, 0.2]}
+        for n in (1, 2, 8, 14):
+            conditions = [{"offset_m": float(i)} for i in range(n)] if n > 1 else [{}]
+            fig, alt, texts = self.drawn(shark_figures.figures, None, conditions, series, lambda seed: {"time_to_block_s": 1.0 + seed})["shark.png"]
+            for c in conditions[:12]:
+                self.assertIn(report.words(c), texts)
+            self.assertEqual("The first 12 of 14 conditions" in alt, n > 12)
+            self.assertEqual(any("The first 12 of 14 conditions" in t.get_text() for t in fig.texts), n > 12)
+
+    def test_of_a_task(self):
+        import task_figures
+        plan = SimpleNamespace(measures=[{"name": f"far_{i}_m", "statistic": "max"} for i in range(5)],
+                               MEASURES={"success": ("yes or no", ""), **{f"far_{i}_m": ("m", "how far") for i in range(5)}})
+        scenario = SimpleNamespace(criteria=[{"measure": m, "at_most": 1} for m in ("success", "far_0_m", "far_1_m")])
+        long = "/tmp/a/very/long/path/of/somebody/with/many/folders/mine.py"
+        for conditions in ([{}], [{"controller": c} for c in ("baseline", "null", long)],
+                           [{"controller": long, "rest_m": float(i), "look_ahead": True} for i in range(5)], [{"rest_m": float(i)} for i in range(14)]):
+            made = self.drawn(lambda *a: task_figures.figures(plan, *a), scenario, conditions,
+                              {"t": [0.0, 1.0], **{f"far_{i}_m": [1.0, None] for i in range(5)}}, lambda seed: {"success": True, "far_0_m": 0.1 * seed, **({"far_1_m": 2.0} if seed == 1 else {})})
+            self.assertEqual(sorted(made), ["outcome.png", "task.png"])
+            for fig, alt, texts in made.values():
+                told = " ".join(texts).replace("\n", " ")
+                for name in report.names(conditions)[:12] if len(conditions) > 1 else ():
+                    self.assertIn(name, told)
+                self.assertNotIn("folders", told)
+                self.assertEqual("The first 12 of 14 conditions" in alt, len(conditions) > 12)
+            self.assertIn("The first 4 of 5 measures", made["task.png"][1])
+
+    def test_of_the_echo_sounder(self):
+        import echo_sounder
+        conditions = [{"slope_deg": float(i)} for i in range(9)]
+        fig, alt, texts = self.drawn(echo_sounder.figures, None, conditions, {"t": [0.0, 1.0], "range": [9.0, 8.0], "true": [9.0, 8.001]}, lambda seed: {})["echo_sounder.png"]
+        for c in conditions[:8]:
+            self.assertIn("First return less the perpendicular distance: " + report.words(c), texts)
+        self.assertIn("The first 8 of 9 conditions", alt)
+
+
 class FakeRobot:
     """What the wizard tells it, and when."""
     name = "rov"

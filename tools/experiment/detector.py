@@ -181,7 +181,7 @@ def _calibration(ax, right, sure, style):
         ax.plot([sure[of].mean()] * 2, [low, high], color=style.BLUE, lw=1.2)
         ax.plot(sure[of].mean(), share, "o", color=style.BLUE, ms=6, mec=style.INK, mew=0.6)
         last = k == len(edges) - 2  # below its mark: the one before it is near
-        ax.annotate(str(int(of.sum())), (sure[of].mean(), low if last else high), xytext=(0, -11 if last else 3),
+        ax.annotate(str(int(of.sum())), (sure[of].mean(), min(low, share - 0.02) if last else max(high, share + 0.02)), xytext=(0, -12 if last else 3),
                     textcoords="offset points", ha="center", size=7.5)
     ax.plot([0, 1], [0, 1], color=style.INK, lw=0.9, ls="--")
     ax.set_xlim(0.2, 1.02)

@@ -7,6 +7,8 @@ import os
 
 import numpy as np
 
+import report
+import summary
 from scenario import SHIPPED, Setting
 
 SETTINGS = {
@@ -44,6 +46,7 @@ rate_hz = {rate!r}
 pitch_deg = -90
 track = {{ file = "descent.csv", heading = "fixed" }}
 """
+MOST, LINES = 8, ("-", "--", ":", "-.")  # conditions of the figure, their lines
 TOP_M = -5.0  # where the descent begins
 
 
@@ -94,21 +97,28 @@ def figures(scenario, results, style):
     done = [r for r in results if r["series"]]
     if not done:
         return
-    fig = style.figure(900, 560)
+    # The first run of each condition.
+    groups = [(c, runs) for c, runs in summary.by_condition(results) if any(r["series"] for r in runs)]
+    names = report.names([c for c, _ in groups])
+    shown = [next(r for r in runs if r["series"]) for _, runs in groups][:MOST]
+    fig = style.figure(900, 430 + 110 * len(shown))
     top = style.area(fig, 70, 50, 870, 330)
-    for i, r in enumerate(done[:4]):
-        t, found, true = (style.numbers(r["series"][k]) for k in ("t", "range", "true"))
-        name = ", ".join(f"{k.rsplit('_', 1)[0]} {v:g}" for k, v in r["condition"].items()) or "first return"
-        top.plot(t, found, color=style.color(i), lw=1.6, ls=("-", "--", ":", "-.")[i], label=name)
+    for i, r in enumerate(shown):
+        t, found = (style.numbers(r["series"][k]) for k in ("t", "range"))
+        top.plot(t, found, color=style.color(i), lw=2.0, ls=LINES[i % len(LINES)], label=names[i] if len(groups) > 1 else "first return")
     top.invert_yaxis()
+    top.set_xlabel("time, s")
     top.set_ylabel("range of the first return, m")
     style.title(top, "The descent")
-    style.legend(top)
-    low = style.area(fig, 70, 390, 870, 510)
-    for i, r in enumerate(done[:4]):
-        t, found, true = (style.numbers(r["series"][k]) for k in ("t", "range", "true"))
-        low.plot(t, 1000 * (found - true), color=style.color(i), lw=1.0, ls=("-", "--", ":", "-.")[i])
+    style.legend(top, handle=3.5)
+    errors = [1000 * (style.numbers(r["series"]["range"]) - style.numbers(r["series"]["true"])) for r in shown]
+    for i, (r, error) in enumerate(zip(shown, errors)):
+        low = style.area(fig, 70, 410 + 110 * i, 870, 475 + 110 * i)
+        low.plot(style.numbers(r["series"]["t"]), error, color=style.BLUE, lw=1.2)
+        style.room(low, errors, 0.01)
+        low.set_ylabel("error, mm")
+        style.title(low, "First return less the perpendicular distance" + (f": {names[i]}" if len(groups) > 1 else ""), 9)
     low.set_xlabel("time, s")
-    low.set_ylabel("error, mm")
-    style.title(low, "First return less the perpendicular distance")
-    yield "echo_sounder.png", "Range of the first return over the descent, and its error", fig
+    told = f"Seed {shown[0]['seed']}. " + report.left_out(len(shown), len(groups), "conditions")
+    fig.text(24 / 900, 6 / (430 + 110 * len(shown)), told, size=8, color=style.INK)
+    yield "echo_sounder.png", "Range of the first return over the descent, and its error, of one run a condition. " + told, fig

@@ -26,6 +26,29 @@ def words(condition):
     return ", ".join(f"{k} {number(v)}" for k, v in condition.items()) or "all runs"
 
 
+def names(conditions):
+    """Words of each condition for figures: of a file its own name, with its folder where two files have one name."""
+    files = {str(v) for c in conditions for v in c.values() if isinstance(v, str) and os.sep in v}
+    base = [os.path.basename(f) for f in files]
+
+    def short(value):
+        if value not in files:
+            return value
+        name = os.path.basename(value)
+        return os.path.join(os.path.basename(os.path.dirname(value)), name) if base.count(name) > 1 else name
+    return [words({k: short(v) if isinstance(v, str) else v for k, v in c.items()}) for c in conditions]
+
+
+def columns(labels, most, room=110):
+    """Panels in a row, at most so many, whose titles of small letters have room for these labels."""
+    return max(1, min(most, len(labels), room // max(1, max(map(len, labels)))))
+
+
+def left_out(shown, of, what):
+    """"" or what a figure does not show."""
+    return "" if shown >= of else f"The first {shown} of {of} {what}; all are in runs.csv."
+
+
 def claim(c):
     """ "median of time_to_block_s (delay_s 0.5) less that of delay_s 0"."""
     return (f"{c['statistic']} of {c['measure']}" + (f" ({words(c['where'])})" if c["where"] else "")

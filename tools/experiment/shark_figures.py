@@ -9,7 +9,9 @@ import summary
 from shark_scene import BESIDE_M
 
 ENOUGH = 0.9  # the share of runs that must block for their times to tell a power: those of the others are cut off
-LINES = ("-", "--", ":", "-.", (0, (1, 1)), (0, (5, 1)))  # of conditions, told apart in grey too
+LINES = ("-", "--", ":", "-.", (0, (6, 1, 1, 1, 1, 1)), (0, (8, 2)))  # of conditions, told apart in grey too, as by
+MARKS = ("o", "s", "^", "D", "v", "P", "X")
+MOST, ACROSS, RUNS = 12, 3, 30  # panels of conditions, in a row; runs a panel
 
 
 def _enough(runs):
@@ -54,40 +56,67 @@ def notes(results):
 def figures(scenario, results, style):
     if not any(r["series"] for r in results):
         return
-    groups = {}
-    for r in results:
-        groups.setdefault(report.words(r["condition"]), []).append(r)
-    shown = list(groups.items())[:len(LINES)]
-    fig = style.figure(900, 652)
-    _distances(style.area(fig, 70, 60, 870, 320), shown, style)
-    _shares(style.area(fig, 70, 400, 450, 590), shown, style)
-    _power(style.area(fig, 520, 400, 870, 590), shown, _paired(results), style)
-    yield "shark.png", "The ROV's distance from the line over time, times to block, and the power over the number of runs", fig
+    groups = summary.by_condition(results)
+    shown = list(zip(report.names([c for c, _ in groups]), (runs for _, runs in groups)))[:MOST]
+    across = report.columns([name for name, _ in shown], ACROSS)
+    down = -(-len(shown) // across)
+    tall = 190 if len(shown) > 1 else 260
+    low = 60 + tall * down + (16 * -(-len(shown) // across) + 30 if len(shown) > 1 else 20)  # where the curves below begin
+    fig = style.figure(900, low + 260)
+    _distances(fig, shown, across, tall, style)
+    _shares(style.area(fig, 70, low, 450, low + 190), shown, style)
+    _power(style.area(fig, 520, low, 870, low + 190), shown, _paired(results), style)
+    width, height = fig.get_size_inches() * style.DPI
+    if len(shown) > 1:
+        from matplotlib.lines import Line2D
+        lines = [Line2D([], [], color=style.color(i), lw=2.0, ls=LINES[i % len(LINES)], marker=MARKS[i % len(MARKS)], ms=4.5, mec=style.INK, mew=0.5)
+                 for i in range(len(shown))]
+        fig.legend(lines, [name for name, _ in shown], loc="lower left", bbox_to_anchor=(60 / width, 1 - (low - 24) / height), ncol=across,
+                   frameon=False, fontsize=8, handlelength=4.5, borderaxespad=0)
+    told = [report.left_out(len(shown), len(groups), "conditions"),
+            report.left_out(RUNS, max(len(runs) for _, runs in shown), "runs of a condition are drawn as lines")]
+    told = " ".join(t for t in told if t)
+    if told:
+        fig.text(24 / width, 12 / height, told, size=8, color=style.INK)
+    yield "shark.png", "The ROV's distance from the line over time, times to block, and the power over the number of runs. " + told, fig
 
 
 def _times(runs):
     return sorted(r["measures"]["time_to_block_s"] for r in runs if "time_to_block_s" in r["measures"])
 
 
-def _distances(ax, groups, style):
+def _distances(fig, groups, across, tall, style):
+    """A panel a condition."""
+    width, height = fig.get_size_inches() * style.DPI
+    every = [r for _, runs in groups for r in runs[:RUNS] if r["series"].get("t")]
+    most = max([max(r["series"]["beside"]) for r in every], default=1.0)
+    last = max([r["series"]["t"][-1] for r in every], default=1.0)
+    fig.text(24 / width, 1 - 22 / height, "Distance of the ROV from the line between diver and shark; dashed: near enough to block", size=10)
+    wide = 800 // across
     for i, (name, runs) in enumerate(groups):
-        for k, r in enumerate([r for r in runs if r["series"].get("t")][:30]):
-            ax.plot(r["series"]["t"], r["series"]["beside"], color=style.color(i), lw=0.8, alpha=0.6, ls=LINES[i],
-                    label=name if k == 0 else None)
-    if not any(r["series"].get("t") for _, runs in groups for r in runs):
-        ax.text(0.5, 0.5, "no run began: nothing met the shark", transform=ax.transAxes, ha="center", va="center", color=style.INK, size=9)
-    ax.axhline(BESIDE_M, color=style.INK, lw=0.9, ls="--")
-    ax.set_xlabel("time since the gaze met the shark, s")
-    ax.set_ylabel("beside the line, m")
-    style.title(ax, "Distance of the ROV from the line between diver and shark")
-    style.legend(ax)
+        left, top = 70 + wide * (i % across), 60 + tall * (i // across)
+        ax = style.area(fig, left, top, left + wide - (35 if across > 1 else 0), top + tall - 75)
+        begun = [r for r in runs[:RUNS] if r["series"].get("t")]
+        for r in begun:
+            ax.plot(r["series"]["t"], r["series"]["beside"], color=style.BLUE, lw=1.0, alpha=0.8)
+        if not begun:
+            ax.text(0.5, 0.5, "no run began: nothing met the shark", transform=ax.transAxes, ha="center", va="center", color=style.INK, size=8)
+        ax.axhline(BESIDE_M, color=style.INK, lw=1.2, ls="--")
+        ax.set_xlim(0, 1.02 * last)
+        ax.set_ylim(0, 1.05 * most)
+        if i % across == 0:
+            ax.set_ylabel("beside the line, m")
+        if i + across >= len(groups):
+            ax.set_xlabel("time since the gaze met the shark, s")
+        style.title(ax, style.short(name, 120 // across), 9)
 
 
 def _shares(ax, groups, style):
     for i, (_, runs) in enumerate(groups):
         times = _times(runs)
         if times:
-            ax.step([0, *times], np.arange(len(times) + 1) / len(runs), where="post", color=style.color(i), lw=1.4, ls=LINES[i])
+            ax.step([0, *times], np.arange(len(times) + 1) / len(runs), where="post", color=style.color(i), lw=2.0,
+                    ls=LINES[i % len(LINES)])
     ax.set_xlim(0, None)
     ax.set_ylim(0, 1.03)
     ax.set_xlabel("time to block, s")
@@ -101,9 +130,11 @@ def _power(ax, groups, spread, style):
     for i, (_, runs) in enumerate(groups):
         times = _times(runs)
         if _enough(runs):
-            ax.plot(n, [intervals.power_of(times, int(k)) for k in n], color=style.color(i), lw=1.4, ls=LINES[i])
+            ax.plot(n, [intervals.power_of(times, int(k)) for k in n], color=style.color(i), lw=1.8,
+                    ls=LINES[i % len(LINES)])
             drawn = [20, 60, 200, 600, 2000]
-            ax.plot(drawn, [intervals.power_by_draws(times, k) for k in drawn], "o", color=style.color(i), ms=4.5, mec=style.INK, mew=0.5)
+            ax.plot(drawn, [intervals.power_by_draws(times, k) for k in drawn], MARKS[i % len(MARKS)], color=style.color(i), ms=5,
+                    mec=style.INK, mew=0.5)
     words = ["runs a group"]
     if spread is not None:
         mean, deviation = spread
@@ -119,4 +150,4 @@ def _power(ax, groups, spread, style):
     ax.set_xlim(n[0] / 1.4, n[-1] * 1.4)
     ax.set_ylim(0, 1.03)
     ax.set_xlabel("\n".join(words))
-    style.title(ax, "Power to tell 10 % more time (dots: by draws)")
+    style.title(ax, "Power to tell 10 % more time (marks: by draws)")

@@ -1,67 +1,107 @@
-"""The figures of a task's report."""
+"""The figures of a task's report: the measures of the criteria by condition, and each run's measures over time."""
 import numpy as np
 
 import intervals
 import report
 import summary
 
-LINES = ("-", "--", ":", "-.")
+MOST, ACROSS, RUNS, MEASURES, JUDGED = 12, 4, 30, 4, 6  # conditions, panels in a row, runs a panel; measures of each figure
 
 
 def figures(task, scenario, results, style):
     groups = summary.by_condition(results)
-    names = [report.words(c) for c, _ in groups]
-    judged = list(dict.fromkeys(c["measure"] for c in scenario.criteria))[:6]
+    names = report.names([c for c, _ in groups])
+    judged = list(dict.fromkeys(c["measure"] for c in scenario.criteria))
     if judged:
-        yield "outcome.png", "The measures of the criteria by condition", _outcomes(task, scenario, judged, groups, names, style)
-    shown = [m["name"] for m in task.measures if m["statistic"] not in ("ever", "duration", "share")][:4]
-    if not shown or not any(r["series"] for r in results):
+        told = [report.left_out(MOST, len(groups), "conditions"), report.left_out(JUDGED, len(judged), "measures")]
+        yield "outcome.png", " ".join(["The measures of the criteria by condition.", *filter(None, told)]), \
+            _outcomes(task, scenario, judged[:JUDGED], groups[:MOST], names, told, style)
+    over_time = [m["name"] for m in task.measures if m["statistic"] not in ("ever", "duration", "share")]
+    if not over_time or not any(r["series"] for r in results):
         return
-    fig = style.figure(900, 60 + 200 * len(shown))
-    for i, name in enumerate(shown):
-        ax = style.area(fig, 80, 50 + 200 * i, 870, 190 + 200 * i)
-        for g, (_, group) in enumerate(groups[:6]):
-            for k, r in enumerate([r for r in group if r["series"]][:30]):
-                ax.plot(r["series"]["t"], style.numbers(r["series"][name]), color=style.color(g), lw=0.8,
-                        ls=LINES[g % 4], alpha=0.9 if len(results) < 4 else 0.5, label=names[g] if k == 0 else None)
-        ax.set_ylabel(task.MEASURES[name][0])
-        style.title(ax, _title(task, name))
-        if i == 0:
-            style.legend(ax)
-    ax.set_xlabel("time, s")
-    yield "task.png", "The measures of each run over time", fig
+    told = [report.left_out(MOST, len(groups), "conditions"), report.left_out(MEASURES, len(over_time), "measures"),
+            report.left_out(RUNS, max(len(group) for _, group in groups), "runs of a condition")]
+    yield "task.png", " ".join(["The measures of each run over time, a panel a condition.", *filter(None, told)]), \
+        _over_time(task, over_time[:MEASURES], groups[:MOST], names, told, style)
+
+
+def _over_time(task, shown, groups, names, told, style):
+    """For each measure a panel a condition."""
+    across = report.columns(names[:len(groups)], ACROSS)
+    down = -(-len(groups) // across)
+    tall, wide = 165, (800 if across == 1 else 820) // across
+    block = 40 + tall * down
+    fig = style.figure(900, 30 + block * len(shown))
+    width, height = fig.get_size_inches() * style.DPI
+    for m, name in enumerate(shown):
+        top = 20 + block * m
+        fig.text(24 / width, 1 - (top + 8) / height, style.short(_title(task, name), 120), size=10, weight="bold", color=style.INK)
+        values = [style.numbers(r["series"][name]) for _, group in groups for r in group[:RUNS] if r["series"]]
+        # Flat curves get ticks of few digits.
+        least = max(1e-6, 0.02 * max([float(np.abs(v[np.isfinite(v)]).max()) for v in values if np.isfinite(v).any()], default=1.0))
+        last = max(r["series"]["t"][-1] for _, group in groups for r in group[:RUNS] if r["series"])
+        for g, (_, group) in enumerate(groups):
+            left, up = 80 + wide * (g % across), top + 40 + tall * (g // across)
+            ax = style.area(fig, left, up, left + wide - (50 if across > 1 else 10), up + tall - 65)
+            done = [r for r in group[:RUNS] if r["series"]]
+            for r in done:
+                ax.plot(r["series"]["t"], style.numbers(r["series"][name]), color=style.BLUE, lw=1.0, alpha=1.0 if len(done) < 4 else 0.7)
+            if not any(np.isfinite(style.numbers(r["series"][name])).any() for r in done):
+                ax.text(0.5, 0.5, "no value", transform=ax.transAxes, ha="center", va="center", color=style.INK, size=8)
+            style.room(ax, values, least)
+            ax.set_xlim(0, 1.02 * last)
+            ax.set_ylabel(task.MEASURES[name][0] if g % across == 0 else "")
+            if g + across >= len(groups):
+                ax.set_xlabel("time, s")
+            if len(groups) > 1:
+                style.title(ax, style.short(names[g], 110 // across), 8)
+    _tell(fig, told, style)
+    return fig
+
+
+def _tell(fig, told, style):
+    """What is left out, at the foot."""
+    height = fig.get_size_inches()[1] * style.DPI
+    if any(told):
+        fig.text(24 / (fig.get_size_inches()[0] * style.DPI), 8 / height, " ".join(filter(None, told)), size=8, color=style.INK)
 
 
 def _words(task, name):
     """The measure in words, without its unit."""
     unit = task.MEASURES[name][0]
-    return (name.removesuffix("_" + unit.replace("/", "_")) if unit else name).replace("_", " ")
+    unit = {"degrees": "deg"}.get(unit, unit.replace("/", "_"))
+    return (name.removesuffix("_" + unit) if unit else name).replace("_", " ")
 
 
 def _title(task, name):
-    """With the formula where that says more than another name."""
-    meaning = task.MEASURES[name][1]
-    return _words(task, name) if meaning.isidentifier() else f"{_words(task, name)}: {meaning}"
+    """With what it means."""
+    return f"{_words(task, name)}: {task.MEASURES[name][1]}"
 
 
-def _outcomes(task, scenario, judged, groups, names, style):
+def _outcomes(task, scenario, judged, groups, names, told, style):
+    """A panel a measure, a row a condition with its name at the left."""
     down = (len(judged) + 1) // 2
-    fig = style.figure(900 if len(judged) > 1 else 470, 50 + 190 * down)
+    labels = [n.replace(", ", ",\n") if len(n) > 26 else n for n in names[:len(groups)]]  # a factor a line where they are long
+    tall = max(60, sum(14 + 12 * (n.count("\n") + 1) for n in labels))
+    room = min(180, 20 + 6 * max(len(part) for n in labels for part in n.split("\n"))) if len(groups) > 1 else 40
+    fig = style.figure(900 if len(judged) > 1 else 470, 40 + (tall + 85) * down)
     for i, name in enumerate(judged):
-        left, top = 80 + 440 * (i % 2), 40 + 190 * (i // 2)
-        ax = style.area(fig, left, top, left + 350, top + 115)
+        left, top = room + 440 * (i % 2), 40 + (tall + 85) * (i // 2)
+        ax = style.area(fig, left, top, 430 + 440 * (i % 2), top + tall)
         unit = task.MEASURES[name][0]
         (_shares if unit == "yes or no" else _dots)(ax, [summary.values_of(group, name) for _, group in groups], style)
         for c in scenario.criteria:
             if c["measure"] == name and "less" not in c:
                 for key in ("at_least", "at_most"):
                     if key in c:
-                        ax.axhline(c[key], color=style.RED, lw=0.9, ls="--")
-        ax.set_xlim(-0.5, len(groups) - 0.5)
-        ax.set_xticks(range(len(groups)), names, rotation=0 if len(groups) < 4 else 25)
-        ax.set_ylabel("share of the runs" if unit == "yes or no" else unit)
+                        ax.axvline(c[key], color=style.RED, lw=1.2, ls="--")
+        ax.set_ylim(len(groups) - 0.5, -0.5)
+        ax.set_yticks(range(len(groups)), ["\n".join(style.short(part, 28) for part in n.split("\n")) for n in labels] if len(groups) > 1 else [""])
         given, of = sum(len(summary.values_of(group, name)) for _, group in groups), sum(len(group) for _, group in groups)
-        style.title(ax, _words(task, name) + ("" if given == of else f" ({given} of {of} runs gave a value)"))
+        ax.set_xlabel(("share of the runs" if unit == "yes or no" else unit or _words(task, name))
+                      + ("" if given == of else f"; {given} of {of} runs gave a value"))
+        style.title(ax, style.short(_words(task, name), 40))
+    _tell(fig, told, style)
     return fig
 
 
@@ -70,17 +110,17 @@ def _shares(ax, columns, style):
     for g, values in enumerate(columns):
         if values:
             share, low, high = intervals.share_interval(int(sum(values)), len(values))
-            ax.plot([g, g], [low, high], color=style.INK, lw=1.6)
-            ax.plot(g, share, "o", ms=6, color=style.color(g), mec=style.INK, mew=0.6, clip_on=False, zorder=3)
-    ax.set_ylim(0, 1.03)
+            ax.plot([low, high], [g, g], color=style.INK, lw=1.6)
+            ax.plot(share, g, "o", ms=6, color=style.BLUE, mec=style.INK, mew=0.6, clip_on=False, zorder=3)
+    ax.set_xlim(0, 1.03)
 
 
 def _dots(ax, columns, style):
-    """A dot a run, equal values side by side, and the median."""
+    """A dot a run, equal values beside each other, and the median as a bar."""
     for g, values in enumerate(columns):
         for value in sorted(set(values)):
             n = values.count(value)
-            ax.plot(g + (np.arange(n) - (n - 1) / 2) * min(0.04, 0.7 / n), [value] * n, "o", ms=4, color=style.color(g),
-                    mec=style.INK, mew=0.4)
+            ax.plot([value] * n, g + (np.arange(n) - (n - 1) / 2) * min(0.08, 0.7 / n), "o", ms=4.5, color=style.BLUE,
+                    mec=style.INK, mew=0.4, zorder=4)
         if values:
-            ax.plot([g - 0.3, g + 0.3], [float(np.median(values))] * 2, color=style.INK, lw=1.6)
+            ax.plot([float(np.median(values))] * 2, [g - 0.35, g + 0.35], color=style.INK, lw=2.0)

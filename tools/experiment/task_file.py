@@ -8,6 +8,8 @@ from formulas import Formula
 from scenario import Refused, Setting, check_keys, read, _number, _word_of
 
 STATISTICS = ("last", "first", "mean", "rms", "min", "max", "ever", "share", "duration")
+IN_WORDS = {"last": "the last", "first": "the first", "mean": "the mean of", "rms": "the root mean square of", "min": "the least", "max": "the largest",
+            "ever": "whether it ever was so:", "share": "share of the time in which", "duration": "how long"}
 MOST_SECONDS = 86400.0
 # Numbers and results that every task has, under these names.
 OWN_NUMBERS = {"time": "the time", "stage_time": "the time in the stage", "controller": "a setting of every task",
@@ -153,8 +155,10 @@ class TaskFile:
                 raise Refused(f"{where}.stage: found {stage!r}; accepted: {', '.join(s['name'] for s in self.stages)}")
             self.measures.append({"name": measure["name"], "of": self._formula(f"{where}.of", measure.get("of")),
                                   "statistic": statistic, "stage": stage})
-            unit = "yes or no" if statistic == "ever" else "s" if statistic == "duration" else str(measure.get("unit", ""))
-            self.MEASURES[measure["name"]] = (unit, str(measure.get("meaning", measure.get("of"))))
+            own_unit = "share of the time" if statistic == "share" else ""
+            unit = "yes or no" if statistic == "ever" else "s" if statistic == "duration" else str(measure.get("unit", own_unit))
+            of = f"{IN_WORDS[statistic]} {measure.get('of')}" + (f", in the stage {stage}" if stage else "")
+            self.MEASURES[measure["name"]] = (unit, str(measure.get("meaning", of)))
 
     def _words(self, key, task):
         names = task.get(key, [])
