@@ -179,6 +179,11 @@ class Judging(unittest.TestCase):
     def test_broken_runs_are_counted(self):
         self.assertEqual(self.judge([1.0, None], at_most=3.0)[1]["broken"], 1)
 
+    def test_two_pairs_tell_nothing(self):
+        import shark_figures
+        runs = [{"condition": {"b": b}, "seed": i, "measures": {"time_to_block_s": 1.5 + b + 0.001 * i * (b + 1)}} for b in (0, 1) for i in range(10)]
+        self.assertIn("3 pairs tell it (paired t test, at least 3)", list(shark_figures.notes(runs))[-1])
+
     def test_a_power_is_not_told_from_the_few_that_blocked(self):
         import shark_figures
         runs = [{"condition": {}, "seed": i, "measures": {"time_to_block_s": 1.5 + 0.02 * i} if i < 12 else {}} for i in range(40)]
@@ -1187,9 +1192,29 @@ class Diver(unittest.TestCase):
 
 class Power(unittest.TestCase):
     def test_runs_to_tell_by_the_textbook(self):
-        # Deviations 1 and 1.1, difference 1 (10 % of 10): (1 + 1.21) (1.96 + 0.8416)^2 = 17.3.
+        # Deviations 1 and 1.1, difference 1 (10 % of 10): (1 + 1.21) (1.96 + 0.8416)^2 = 17.3, and one more by Student's t.
         values = [10 + z for z in (-1.2247449, 0, 1.2247449)]
-        self.assertEqual(intervals.runs_to_tell(values * 1000, 1.1), 18)
+        self.assertEqual(intervals.runs_to_tell(values * 1000, 1.1), 19)
+
+    def test_limits_and_powers_of_students_t_by_the_tables(self):
+        # Student's t, 2.5 % above (Abramowitz and Stegun 1964, table 26.10).
+        for freedom, limit in ((2, 4.303), (3, 3.182), (10, 2.228), (30, 2.042), (120, 1.980), (300, 1.968)):
+            self.assertAlmostEqual(intervals.t_limit(freedom), limit, delta=6e-4)
+        # Paired t test (Cohen 1988, as G*Power 3 computes it).
+        self.assertAlmostEqual(intervals.paired_power(0.5, 1.0, 34), 0.8078, 4)
+        self.assertAlmostEqual(intervals.paired_power(1.0, 1.0, 10), 0.8031, 4)
+        self.assertEqual([intervals.pairs_to_tell(*c) for c in ((0.5, 1.0), (1.0, 1.0), (1.0, 0.01), (1.0, 0.0), (0.0, 1.0))], [34, 10, 3, 3, None])
+
+    def test_small_groups_have_the_power_that_draws_find(self):
+        """Of three normal pairs whose normal approximation would claim 98 %."""
+        rng = np.random.Generator(np.random.Philox(key=5))
+        drawn = rng.normal(2.4, 1.0, (20000, 3))
+        found = np.abs(drawn.mean(axis=1)) > intervals.t_limit(2) * drawn.std(axis=1, ddof=1) / math.sqrt(3)
+        self.assertAlmostEqual(intervals.paired_power(2.4, 1.0, 3), float(found.mean()), delta=0.012)
+        self.assertLess(found.mean(), 0.8)
+        values = [10 + intervals.normal_quantile((i + 0.5) / 400) for i in range(400)]
+        for runs in (4, 8):
+            self.assertAlmostEqual(intervals.power_by_draws(values, runs, draws=20000), intervals.power_of(values, runs), delta=0.03)
 
     def test_draws_agree_with_the_approximation(self):
         values = [10 + 3 * intervals.normal_quantile((i + 0.5) / 400) for i in range(400)]

@@ -1,7 +1,9 @@
 """Numbers of many runs: medians and shares with 95 % confidence intervals. No random draws: the same runs give the
 same intervals."""
+import functools
 import math
 
+LEAST = 3  # runs or pairs: of two, the spread is a guess
 Z95 = 1.959963984540054  # of the normal distribution, two-sided 95 %
 
 
@@ -46,39 +48,101 @@ def share_interval(successes, n):
 
 
 def runs_to_tell(values, ratio=1.1, power=0.8):
-    """Runs a group that tell a change of the mean by this ratio apart at 5 % (two-sided), with this power: the normal
-    approximation for two groups, one of the spread that these values have, the other longer and wider by the ratio. None
-    where they do not spread or are too few."""
-    n = len(values)
-    if n < 2:
+    """Runs a group, LEAST or more, that tell a change of the mean by this ratio apart at 5 % (two-sided), with this power:
+    Welch's test (1947) of two normal groups, one of the spread that these values have, the other longer and wider by the
+    ratio. None where they do not spread or are too few."""
+    if len(values) < 2 or not any(values):
         return None
-    mean = sum(values) / n
-    variance = sum((v - mean) ** 2 for v in values) / (n - 1)
-    difference = abs(mean * (ratio - 1))
-    if difference == 0:
-        return None
-    return max(2, math.ceil((1 + ratio ** 2) * variance * (Z95 + normal_quantile(power)) ** 2 / difference ** 2))
+    return _least(lambda n: power_of(values, n, ratio), power)
 
 
 def power_of(values, runs, ratio=1.1):
-    """The power of that test with `runs` runs a group."""
-    n = len(values)
-    mean = sum(values) / n
-    variance = sum((v - mean) ** 2 for v in values) / (n - 1)
+    """The power of that test with `runs` runs a group, LEAST or more, by the noncentral t distribution with Welch's degrees of
+    freedom."""
+    mean, variance = _moments(values)
     if variance == 0:
         return 1.0
-    return normal_share(abs(mean * (ratio - 1)) / math.sqrt((1 + ratio ** 2) * variance / runs) - Z95)
+    freedom = (runs - 1) * (1 + ratio ** 2) ** 2 / (1 + ratio ** 4)
+    return _t_power(abs(mean * (ratio - 1)) / math.sqrt((1 + ratio ** 2) * variance / runs), freedom)
+
+
+def pairs_to_tell(change, deviation, power=0.8):
+    """Pairs, LEAST or more, that tell a mean difference of `change` apart from none at 5 % (two-sided) where the differences
+    deviate so much: the paired t test, exact for normal differences. None where the change is none."""
+    return None if change == 0 else _least(lambda n: paired_power(change, deviation, n), power)
+
+
+def paired_power(change, deviation, pairs):
+    """The power of that test with `pairs` pairs, LEAST or more."""
+    return 1.0 if deviation == 0 else _t_power(abs(change) / deviation * math.sqrt(pairs), pairs - 1)
+
+
+def _moments(values):
+    mean = sum(values) / len(values)
+    return mean, sum((v - mean) ** 2 for v in values) / (len(values) - 1)
+
+
+def _least(power_at, power):
+    """The least number of at least LEAST whose power is reached; power_at rises."""
+    high = LEAST
+    while power_at(high) < power:
+        high *= 2
+        if high > 2 ** 40:
+            return None
+    low = max(LEAST - 1, high // 2)
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if power_at(middle) >= power else (middle, high)
+    return high
+
+
+def _t_above(t, freedom, shift=0.0):
+    """P(T > t) of Student's t with a shift (noncentrality): the mean of the normal share over the chi distribution of the
+    deviation that is found, by Simpson's rule (Johnson, Kotz and Balakrishnan 1995, 31.2). Two degrees of freedom or more."""
+    half = 10.0 / math.sqrt(2.0 * freedom)
+    low, high, n = max(0.0, 1.0 - half), 1.0 + half, 400
+    log_scale = math.log(2.0) + 0.5 * freedom * math.log(0.5 * freedom) - math.lgamma(0.5 * freedom)
+    total = 0.0
+    for i in range(n + 1):
+        s = low + (high - low) * i / n
+        if s > 0.0:
+            weight = 1 if i in (0, n) else 4 if i % 2 else 2
+            total += weight * math.exp(log_scale + (freedom - 1.0) * math.log(s) - 0.5 * freedom * s * s) * normal_share(shift - t * s)
+    return total * (high - low) / (3.0 * n)
+
+
+@functools.lru_cache(maxsize=4096)
+def t_limit(freedom):
+    """What Student's t leaves 2.5 % above: by bisection, of many degrees of freedom by the expansion of Abramowitz and
+    Stegun 1964, 26.7.5."""
+    z = Z95
+    many = z + (z ** 3 + z) / (4 * freedom) + (5 * z ** 5 + 16 * z ** 3 + 3 * z) / (96 * freedom ** 2)
+    if freedom > 200:
+        return many
+    low, high = z, 5.0  # of two degrees of freedom it is 4.30
+    while high - low > 1e-9:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if _t_above(middle, freedom) > 0.025 else (low, middle)
+    return 0.5 * (low + high)
+
+
+def _t_power(shift, freedom):
+    """The power of a two-sided t test at 5 %: what lies above either limit."""
+    if shift > 30.0:
+        return 1.0
+    limit = t_limit(freedom)
+    return _t_above(limit, freedom, shift) + _t_above(limit, freedom, -shift)
 
 
 def power_by_draws(values, runs, ratio=1.1, draws=2000):
     """The same without the normal approximation: groups of `runs` runs are drawn from the values, one of them longer by the
-    ratio, and Welch's test (1947) is made on each pair; from 20 runs on its limit is near the normal one. Counter-based draws."""
+    ratio, and Welch's test (1947) is made on each pair, at its limit of t. Counter-based draws."""
     import numpy as np
     rng = np.random.Generator(np.random.Philox(key=runs))
     have = np.asarray(values, float)
     a, b = (have[rng.integers(0, len(have), (draws, runs))] * r for r in (1.0, ratio))
     spread = np.sqrt(a.var(axis=1, ddof=1) / runs + b.var(axis=1, ddof=1) / runs)
-    return float((np.abs(b.mean(axis=1) - a.mean(axis=1)) > Z95 * spread).mean())
+    return float((np.abs(b.mean(axis=1) - a.mean(axis=1)) > t_limit((runs - 1) * (1 + ratio ** 2) ** 2 / (1 + ratio ** 4)) * spread).mean())
 
 
 def normal_share(z):

@@ -1,6 +1,4 @@
 """The figure and the notes of the shark's report: distances over time, times to block, and how many runs tell a difference."""
-import math
-
 import numpy as np
 
 import intervals
@@ -48,9 +46,9 @@ def notes(results):
                    + (f" This is of those that blocked: {blocked}." if len(times) < len(group) else ""))
     spread = _paired(results)
     if spread is not None:
-        pairs = math.ceil(((intervals.Z95 + intervals.normal_quantile(0.8)) * spread[1] / (0.1 * spread[0])) ** 2)
-        yield (f"With the same seeds in both conditions, by the spread of the differences between the first two, {max(2, pairs)} "
-               "pairs tell it: compare conditions by factors, not by two experiments.")
+        pairs = intervals.pairs_to_tell(0.1 * spread[0], spread[1])
+        yield (f"With the same seeds in both conditions, by the spread of the differences between the first two, {pairs} "
+               "pairs tell it (paired t test, at least 3): compare conditions by factors, not by two experiments.")
 
 
 def figures(scenario, results, style):
@@ -126,7 +124,7 @@ def _shares(ax, groups, style):
 
 
 def _power(ax, groups, spread, style):
-    n = np.unique(np.geomspace(2, 2000, 120).astype(int))
+    n = np.unique(np.geomspace(3, 2000, 60).astype(int))
     for i, (_, runs) in enumerate(groups):
         times = _times(runs)
         if _enough(runs):
@@ -138,7 +136,7 @@ def _power(ax, groups, spread, style):
     words = ["runs a group"]
     if spread is not None:
         mean, deviation = spread
-        ax.plot(n, [intervals.normal_share(0.1 * mean * math.sqrt(k) / max(deviation, 1e-12) - intervals.Z95) for k in n],
+        ax.plot(n, [intervals.paired_power(0.1 * mean, deviation, int(k)) for k in n],
                 color=style.INK, lw=1.2, ls=":")
         words[0] += " (dotted: the same seeds in both groups)"
     few = sum(not _enough(runs) for _, runs in groups)
