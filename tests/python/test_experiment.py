@@ -176,6 +176,30 @@ class Judging(unittest.TestCase):
         self.assertEqual((verdicts, told["passed"]), ({"median of m (b 3)": "not run"}, True))
         self.assertFalse(self.compare([], {"baseline": 0.5}, tables.replace("b = 3.0 }", "b = 4.0 }"))[0]["passed"])  # nobody left it out
 
+    def test_equal_runs_have_no_interval(self):
+        def told(series):
+            results = [{"condition": {}, "seed": i, "settings": {}, "measures": {"m": 2.0, "y": True}, "failure": None, "series": s, "processor_s": 0}
+                       for i, s in enumerate(series)]
+            kind = SimpleNamespace(MEASURES={"m": ("s", ""), "y": ("yes or no", "")})
+            plan = SimpleNamespace(kind=kind, criteria=[], name="", title="", about="", kind_name="", seed=1, settings={}, vary={}, factors={})
+            condition, = summary.summarise(plan, results)["conditions"]
+            return condition["equal"], [condition["measures"][k]["low"] for k in "my"], report._condition_table(plan, condition)
+        equal, low, page = told([{"t": [1]}] * 8)
+        self.assertEqual((equal, low), (True, [None, None]))
+        self.assertIn("All 8 runs gave the same numbers to the bit", page)
+        equal, low, page = told([{"t": [i]} for i in range(8)])  # of other courses that end alike
+        self.assertFalse(equal or None in low or "to the bit" in page)
+
+    def test_the_seed_moves_the_echo_sounders_start_and_heave(self):
+        import echo_sounder
+        settings = {k: v.default for k, v in echo_sounder.SETTINGS.items()} | {"heave_m": 0.2}
+        times = np.arange(80) / 10.0
+        ups = np.array([echo_sounder._depths(settings, seed, times)[1] for seed in range(1, 41)])
+        self.assertTrue((np.abs(ups.mean(axis=1)) <= 0.05).all() and ups.mean(axis=1).std() > 0.02)  # over whole heaves: the start
+        self.assertTrue(((ups - ups.mean(axis=1, keepdims=True)).argmax(axis=1).std()) > 10)  # the top of the heave comes at any time
+        still = echo_sounder._depths(settings | {"start_spread_m": 0.0, "heave_m": 0.0}, 3, times)
+        np.testing.assert_array_equal(still[1], 0.0)
+
     def test_broken_runs_are_counted(self):
         self.assertEqual(self.judge([1.0, None], at_most=3.0)[1]["broken"], 1)
 

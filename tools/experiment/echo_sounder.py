@@ -1,6 +1,6 @@
 """The echo sounder of the published experiment: an ROV sinks from 20 m above the floor at 5 m/min for 180 s, in a heave
 that it does or does not feel. The slope of range over time is the speed; on a slope the first return is the
-perpendicular distance."""
+perpendicular distance. The seed draws what a repeat would not have the same: how high the descent begins, and where in the heave."""
 import csv
 import math
 import os
@@ -9,15 +9,16 @@ import numpy as np
 
 import report
 import summary
-from scenario import SHIPPED, Setting
+from scenario import SHIPPED, Setting, draw
 
 SETTINGS = {
     "height_m": Setting(20.0, "above the floor at the start", 2.0, 40.0),
+    "start_spread_m": Setting(0.05, "by which the seed sets the start higher or lower, at most", 0.0, 0.5),
     "speed_m_min": Setting(5.0, "downwards", 0.1, 60.0),
     "seconds": Setting(180.0, "of the descent", 5.0, 600.0),
     "rate_hz": Setting(2.0, "pings a second", 0.2, 20.0),
     "slope_deg": Setting(0.0, "of the floor", 0.0, 12.0),
-    "heave_m": Setting(0.0, "amplitude of a heave of 8 s", 0.0, 2.0),
+    "heave_m": Setting(0.0, "amplitude of a heave of 8 s, whose beginning the seed draws", 0.0, 2.0),
     "bins": Setting(500, "range bins", 50, 4000, whole=True),
 }
 MEASURES = {
@@ -50,21 +51,23 @@ MOST, LINES = 8, ("-", "--", ":", "-.")  # conditions of the figure, their lines
 TOP_M = -5.0  # where the descent begins
 
 
-def _depths(settings, times):
+def _depths(settings, seed, times):
+    """(metres sunk, metres up by the heave and the start) at these seconds."""
     sunk = settings["speed_m_min"] / 60.0 * times
-    return sunk, settings["heave_m"] * np.sin(2 * math.pi * times / 8.0)
+    start = draw(seed, "start", -1.0, 1.0) * settings["start_spread_m"]
+    return sunk, start + settings["heave_m"] * np.sin(2 * math.pi * (times / 8.0 + draw(seed, "heave", 0.0, 1.0)))
 
 
 def run(settings, seed, tools):
     pings = int(round(settings["seconds"] * settings["rate_hz"])) + 1
     times = np.arange(pings) / settings["rate_hz"]
-    sunk, heave = _depths(settings, times)
+    sunk, heave = _depths(settings, seed, times)
     # Finer than the pings, so that the heave's straight pieces are none.
     fine = np.arange(int(settings["seconds"] * 20) + 21) / 20.0
-    fine_sunk, fine_heave = _depths(settings, fine)
+    fine_sunk, fine_heave = _depths(settings, seed, fine)
     tools.write("descent.csv", "t_s,x,y,z\n" + "".join(
         f"{t!r},0,{TOP_M - s + h!r},0\n" for t, s, h in zip(fine.tolist(), fine_sunk.tolist(), fine_heave.tolist())))
-    farthest = settings["height_m"] + settings["heave_m"] + 2.0
+    farthest = settings["height_m"] + settings["heave_m"] + settings["start_spread_m"] + 2.0
     scene = tools.write("scene.toml", SCENE.format(
         seed=seed, floor=TOP_M - settings["height_m"], slope=settings["slope_deg"], farthest=farthest,
         bins=settings["bins"], rate=settings["rate_hz"]))

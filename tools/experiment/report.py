@@ -134,6 +134,8 @@ def _condition_table(scenario, condition):
     failures = "".join(f"<p class=\"no\">{n} of {condition['runs']} runs: {html.escape(cause)}</p>"
                        for cause, n in condition["failures"].items())
     failures += "".join(f"<p>{n} of {condition['runs']} runs gave no {html.escape(why)}</p>" for why, n in condition["absent"].items())
+    if condition.get("equal"):
+        failures += f"<p>All {condition['runs']} runs gave the same numbers to the bit: nothing here is drawn by the seed, so there is no interval.</p>"
     return f"<h3>{html.escape(words(condition['condition']))}</h3>{failures}<table>{''.join(rows)}</table>"
 
 

@@ -30,11 +30,18 @@ def _statistic(name, values):
             "share": lambda: sum(v > 0.5 for v in values) / len(values)}[name]()
 
 
+def are_equal(results):
+    """Whether runs of other seeds gave the same numbers to the bit, all measures and series: they are one run, and tell no
+    interval."""
+    return len(results) > 1 and bool(results[0]["measures"]) and bool(results[0].get("series")) and \
+        all(r["measures"] == results[0]["measures"] and r.get("series") == results[0]["series"] for r in results[1:])
+
+
 def summarise(scenario, results):
     """Plain data: {conditions: [...], criteria: [...], passed}. Broken: failed without any measure, as by an exception."""
     conditions = []
     for condition, group in by_condition(results):
-        measures = {}
+        measures, equal = {}, are_equal(group)
         for name, (unit, meaning) in scenario.kind.MEASURES.items():
             values = values_of(group, name)
             if not values:
@@ -46,10 +53,13 @@ def summarise(scenario, results):
                 middle, low, high = ours.median_interval(values)
                 measures[name] = {"unit": unit, "n": len(values), "median": middle, "low": low, "high": high,
                                   "min": min(values), "max": max(values)}
+            if equal:
+                measures[name] |= {"low": None, "high": None}
         causes = collections.Counter(r["failure"] for r in group if r["failure"])
         absent = collections.Counter(f"{name}: {why}" for r in group for name, why in r.get("absent", {}).items())
         conditions.append({"condition": condition, "runs": len(group), "failed": sum(causes.values()),
-                           "failures": dict(causes.most_common()), "absent": dict(absent.most_common()), "measures": measures})
+                           "failures": dict(causes.most_common()), "absent": dict(absent.most_common()), "measures": measures,
+                           "equal": equal})
     criteria = [_judge(scenario, results, part) for c in scenario.criteria for part in _by_level(scenario, c)]
     return {"experiment": scenario.name, "title": scenario.title, "about": scenario.about, "kind": scenario.kind_name,
             "seed": scenario.seed, "runs": len(results),
