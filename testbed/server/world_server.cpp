@@ -140,7 +140,9 @@ Status WorldServer::check_holder(const Ask& ask) const {
   if (options_.real_time || holder_ == ask.client) return {};
   return refusal(name_of(ask.request.op),
                  holder_ == 0 ? "a clock that nobody holds"
-                              : fmt::format("a clock that {} holds", holder_name_),
+                 : holder_name_ == ask.name
+                     ? fmt::format("a clock that another client of the name {} holds", ask.name)
+                     : fmt::format("a clock that {} holds", holder_name_),
                  "the client that holds the clock");
 }
 
@@ -206,9 +208,9 @@ Status WorldServer::wish_images(std::uint32_t stream) {
 
 Status WorldServer::image(const Ask& ask, Answer& answer) {
   NERITIC_TRY(const std::uint32_t stream, world_.stream(ask.request.stream));
-  auto& clients = wishes_[stream];
   // Another's wish would hide a rate that is refused.
   if (ask.request.on) NERITIC_TRY_STATUS(world_.check_image(stream, ask.request.rate_hz));
+  auto& clients = wishes_[stream];
   if (ask.request.on)
     clients[ask.client] = {ask.request.rate_hz, ask.request.keep};
   else if (clients.erase(ask.client) == 0)

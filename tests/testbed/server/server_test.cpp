@@ -174,6 +174,8 @@ TEST_F(ServerTest, OneClientHoldsTheClockAndItsEndFreesIt) {
   done(*holder, {{"op", "tick"}, {"steps", 5}});
   EXPECT_THAT(refused(*other, {{"op", "tick"}, {"steps", 5}}),
               testing::HasSubstr("tick: found a clock that ada holds"));
+  EXPECT_THAT(refused(*client("ada"), {{"op", "tick"}, {"steps", 5}}),
+              testing::HasSubstr("tick: found a clock that another client of the name ada holds"));
   EXPECT_EQ(done(*other, {{"op", "observe"}}).map.at("clock"), "ada");
   holder.reset();
   bool ticked = false;
@@ -247,8 +249,6 @@ TEST_F(ServerTest, WhoDoesNotGreetIsNotHeard) {
   EXPECT_THAT(map.at("error").get<std::string>(), testing::HasSubstr("hello first"));
 }
 
-TEST_F(ServerTest, AClientWithManyRequestsIsRefusedBeyondABoundAndTheOthersGoOn) {
-  serve();
 TEST_F(ServerTest, EachRequestThatIsNoneIsRefusedInAnAnswer) {
   serve();
   const auto remote = client();
@@ -288,6 +288,8 @@ TEST_F(ServerTest, EachRequestThatIsNoneIsRefusedInAnAnswer) {
   EXPECT_EQ(answer(net::pack({{"op", "hello"}, {"id", 9}, {"protocol", 1}})).at("id"), 9);
 }
 
+TEST_F(ServerTest, AClientWithManyRequestsIsRefusedBeyondABoundAndTheOthersGoOn) {
+  serve();
   const auto other = client("bob");
   const auto flood = net::ClientSocket::connect({.address = server_->address()}).value();
   flood->send({net::pack({{"op", "hello"}, {"id", 1}, {"protocol", 1}})});
