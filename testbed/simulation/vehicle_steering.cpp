@@ -30,6 +30,32 @@ std::uint64_t failed_thrusters(const PhysicsVehicle& vehicle, const VehicleInput
   }
 }
 
+// The wanted velocity, level and to the front, cut to what the thrusters can hold against the drag
+// through the water: what is beyond leaves the controller nothing for depth and line. A current
+// that helps carries the vehicle on top. Per axis of the way, v from F = d1 v + d2 v^2 with F the
+// largest force along it.
+VehicleVelocity within_reach(VehicleVelocity wanted, const rov::Vehicle& vehicle,
+                             const rov::Allocator& allocator, const rov::State& known) {
+  const double speed_m_s = glm::length(wanted.velocity_m_s);
+  if (speed_m_s == 0.0) return wanted;
+  const Vec3 way = wanted.velocity_m_s / speed_m_s;
+  const double force_n = allocator.largest(rov::vec6(way, Vec3(0.0)));
+  const auto drag_n = [&](double v_m_s) {
+    return glm::dot(rov::drag_of(vehicle, v_m_s * way).linear(), way);
+  };
+  // Drag at 1 and 2 m/s gives both of its coefficients.
+  const double quadratic = 0.5 * drag_n(2.0) - drag_n(1.0), linear = drag_n(1.0) - quadratic;
+  const double through_m_s =
+      quadratic > 0.0
+          ? (std::sqrt(linear * linear + 4.0 * quadratic * force_n) - linear) / (2.0 * quadratic)
+      : linear > 0.0 ? force_n / linear
+                     : speed_m_s;
+  const Vec3 heading_way = rov::heading_attitude(rov::heading_of(known.attitude)) * way;
+  const double helps_m_s = std::max(0.0, glm::dot(known.held.current_ned_m_s, heading_way));
+  wanted.velocity_m_s = std::min(speed_m_s, through_m_s + helps_m_s) * way;
+  return wanted;
+}
+
 }  // namespace
 
 bool PhysicsWorld::control_due(std::size_t vehicle, std::uint64_t step) const {
@@ -82,10 +108,15 @@ bool PhysicsWorld::steer(std::size_t index, const StepCall& call, double time_s)
     state.integral = {};
     return true;
   }
+  const std::uint64_t failed = failed_thrusters(vehicle, inputs, state);
+  std::optional<rov::Allocator> without;
+  const rov::Allocator& left = failed == vehicle.failed_thrusters
+                                   ? vehicle.kind.allocator
+                                   : without.emplace(vehicle.vehicle, failed);
   const auto given_by = [&] {
     return inputs.setpoint_by_velocity != 0
-               ? velocity_setpoint(inputs.velocity, known, vehicle.file.gains.period_s,
-                                   state.mission)
+               ? velocity_setpoint(within_reach(inputs.velocity, vehicle.vehicle, left, known),
+                                   known, vehicle.file.gains.period_s, state.mission)
                : given_setpoint(inputs.setpoint, state.mission);
   };
   rov::Setpoint setpoint = piloted ? piloted_setpoint(inputs.wrench.wrench, known, state.mission)
@@ -97,14 +128,8 @@ bool PhysicsWorld::steer(std::size_t index, const StepCall& call, double time_s)
   else
     setpoint = rov::lean(setpoint, known, vehicle.file.gains.period_s, state.mission.lean_ned_m);
   rov::ControlState control{state.integral, state.mission.speed_n};
-  const auto commands_by = [&](const rov::Allocator& allocator) {
-    return rov::level_inputs(vehicle.vehicle, allocator, vehicle.file.gains, setpoint, known,
-                             control);
-  };
-  const std::uint64_t failed = failed_thrusters(vehicle, inputs, state);
-  rov::Inputs commands = failed == vehicle.failed_thrusters
-                             ? commands_by(vehicle.kind.allocator)
-                             : commands_by(rov::Allocator(vehicle.vehicle, failed));
+  rov::Inputs commands =
+      rov::level_inputs(vehicle.vehicle, left, vehicle.file.gains, setpoint, known, control);
   const auto asked_n = commands.thruster_n;
   rov::drive(vehicle.file, commands, battery(call.after, index));
   if (setpoint.over_ground) {

@@ -175,7 +175,8 @@ class World {
   // A command for an agent takes the authority over its group and holds until the next one,
   // release() or, if hold_s > 0, until so long nothing came. Vehicles:
   //   goto        x y z yaw [vx vy vz]: be there, level
-  //   velocity    vx vy vz yaw_rate: over ground, forward, left, up of its heading
+  //   velocity    vx vy vz yaw_rate: over ground, forward, left, up of its heading; cut to what the
+  //               thrusters reach in that direction
   //   wrench      fx fy fz tx ty tz: N, N m, body axes; depth and heading are held where it is 0
   //   thrusters   a force each, N    pwm    a pulse width each, us    faults    1 each that fails
   // Divers: buttons  inflate deflate dump; joints  15 quaternions; head  position, orientation,

@@ -23,6 +23,18 @@ Status check_count(const std::string& where, std::size_t found, std::size_t leas
                  least == most ? fmt::format("{}", least) : fmt::format("{} or {}", least, most));
 }
 
+// Beyond these no vehicle is and no thruster pushes: a wrong unit, or a number that was never set.
+constexpr double kMost_m = 1e6, kMost_m_s = 100.0, kMost_n = 1e6;
+
+Status check_most(const std::string& where, std::span<const double> values, double most,
+                  const char* unit) {
+  for (const double value : values)
+    if (std::abs(value) > most)
+      return refusal(where, fmt::format("{} {}", value, unit),
+                     fmt::format("{} to {} {}", -most, most, unit));
+  return {};
+}
+
 // A command's numbers as those of a payload's fields, and the kind of that.
 struct Said {
   PayloadKind kind = PayloadKind::kEvent;
@@ -35,6 +47,8 @@ Result<Said> vehicle_command(const PhysicsVehicle& vehicle, const std::string& w
   const std::size_t thrusters = vehicle.vehicle.thruster_count;
   if (kind == "goto") {
     NERITIC_TRY_STATUS(check_count(where, values.size() == 7 ? 4 : values.size(), 4, 4));
+    NERITIC_TRY_STATUS(check_most(where, std::span(values).first(3), kMost_m, "m"));
+    NERITIC_TRY_STATUS(check_most(where, std::span(values).subspan(4), kMost_m_s, "m/s"));
     const double yaw = values[3];
     values.erase(values.begin() + 3);
     values.resize(6, 0.0);
@@ -43,10 +57,13 @@ Result<Said> vehicle_command(const PhysicsVehicle& vehicle, const std::string& w
   }
   if (kind == "velocity") {
     NERITIC_TRY_STATUS(check_count(where, values.size(), 4, 4));
+    NERITIC_TRY_STATUS(check_most(where, std::span(values).first(3), kMost_m_s, "m/s"));
+    NERITIC_TRY_STATUS(check_most(where, std::span(values).last(1), kMost_m_s, "rad/s"));
     return Said{PayloadKind::kVelocity, values};
   }
   if (kind == "wrench") {
     NERITIC_TRY_STATUS(check_count(where, values.size(), 6, 6));
+    NERITIC_TRY_STATUS(check_most(where, values, kMost_n, "N or N m"));
     return Said{PayloadKind::kWrench, values};
   }
   NERITIC_TRY_STATUS(check_count(where, values.size(), thrusters, thrusters));
@@ -57,6 +74,7 @@ Result<Said> vehicle_command(const PhysicsVehicle& vehicle, const std::string& w
     for (double& value : values)
       value = vehicle.file.curve->thrust_n(value, vehicle.file.voltage_v);
   }
+  if (kind == "thrusters") NERITIC_TRY_STATUS(check_most(where, values, kMost_n, "N"));
   values.resize(rov::kMaxThrusters, 0.0);
   return Said{kind == "faults" ? PayloadKind::kFault : PayloadKind::kThrusters, values};
 }

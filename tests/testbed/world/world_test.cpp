@@ -18,17 +18,18 @@ std::string assets(const char* path) {
 }
 
 // One vehicle with all its sensors that faces east at 6 m, and a box that devices move.
-std::string scene_text() {
+std::string scene_text(const std::string& dynamics = "bluerov2_heavy_survey_dynamics") {
   return "[physics]\n[[vehicles]]\nname = \"rov\"\nshape = \"box\"\ndynamics = \"" +
-         assets("vehicles/bluerov2_heavy_survey_dynamics.toml") +
+         assets(("vehicles/" + dynamics + ".toml").c_str()) +
          "\"\nposition_m = [2, -6, -3]\nrotation_xyzw = [0, -0.7071067811865476, 0, "
          "0.7071067811865476]\n";
 }
 
 class WorldTest : public testing::Test {
  protected:
-  std::unique_ptr<World> open(const WorldOptions& options = {}) const {
-    EXPECT_TRUE(write_text(scratch_ / "s.toml", scene_text()).ok());
+  std::unique_ptr<World> open(const WorldOptions& options = {},
+                              const char* dynamics = "bluerov2_heavy_survey_dynamics") const {
+    EXPECT_TRUE(write_text(scratch_ / "s.toml", scene_text(dynamics)).ok());
     auto world = World::open(scratch_ / "s.toml", options);
     EXPECT_TRUE(world.ok()) << (world.ok() ? "" : world.error().message);
     return std::move(world).value();
@@ -84,6 +85,46 @@ TEST_F(WorldTest, MovesAtTheVelocityThatItIsTold) {
   EXPECT_NEAR(truth.position[0] - before.position[0], 4.0, 0.3);  // it flies on what it measures
   EXPECT_NEAR(truth.position[1] - before.position[1], 1.0, 0.3);
   EXPECT_NEAR(truth.position[2], -6.0, 0.1);
+}
+
+// Whatever it is told, it goes no faster than it can, in its line and at its depth.
+TEST_F(WorldTest, AVelocityBeyondItsReachKeepsDepthAndLine) {
+  double reached_m_s = 0.0;
+  for (const double told_m_s : {0.5, 1.0, 3.0, 10.0, 100.0}) {
+    const auto world = open({}, "bluerov2_heavy_dynamics");  // it knows where it is
+    ASSERT_TRUE(world->tick(120).ok());
+    const Truth before = world->truth("rov").value();
+    const double ahead[] = {told_m_s, 0.0, 0.0, 0.0};
+    ASSERT_TRUE(world->command("rov", "velocity", ahead).ok());
+    double up_m = 0.0, aside_m = 0.0;
+    for (int i = 0; i < 100; ++i) {
+      ASSERT_TRUE(world->tick(24).ok());
+      const Truth now = world->truth("rov").value();
+      up_m = std::max(up_m, std::abs(now.position[2] - before.position[2]));
+      aside_m = std::max(aside_m, std::abs(now.position[1] - before.position[1]));
+    }
+    EXPECT_LT(up_m, 0.15) << told_m_s;
+    EXPECT_LT(aside_m, 0.15) << told_m_s;
+    const double speed_m_s = world->truth("rov")->linear_velocity[0];
+    if (told_m_s == 0.5)
+      EXPECT_NEAR(speed_m_s, told_m_s, 0.02);
+    else if (told_m_s == 1.0)
+      reached_m_s = speed_m_s;
+    else
+      EXPECT_NEAR(speed_m_s, reached_m_s, 0.02);
+  }
+  const auto world = open();
+  for (const auto& [kind, values, words] :
+       std::vector<std::tuple<std::string, std::vector<double>, std::string>>{
+           {"velocity", {1e30, 0, 0, 0}, "velocity: found 1e+30 m/s; accepted: -100 to 100 m/s"},
+           {"velocity", {0, 0, 0, -1e9}, "rad/s"},
+           {"goto", {0, 1e30, 0, 0}, "accepted: -1000000 to 1000000 m"},
+           {"wrench", {1e300, 0, 0, 0, 0, 0}, "N or N m"},
+           {"thrusters", std::vector<double>(8, 1e9), "accepted: -1000000 to 1000000 N"}}) {
+    const Status status = world->command("rov", kind, values);
+    ASSERT_FALSE(status.ok()) << kind;
+    EXPECT_NE(status.error().message.find(words), std::string::npos) << status.error().message;
+  }
 }
 
 TEST_F(WorldTest, GivesThrustersTheirForces) {

@@ -116,7 +116,8 @@ class Vehicle(Agent):
 
     def velocity(self, forward: float, left: float = 0.0, up: float = 0.0, yaw_rate: float = 0.0,
                  hold: float = 0.0) -> None:
-        """Move over ground at this velocity, level: m/s relative to the heading, and rad/s."""
+        """Move over ground at this velocity, level: m/s relative to the heading, and rad/s. One beyond what its thrusters
+        reach in that direction is cut to it; more than 100 m/s or rad/s is refused."""
         self._joined("velocity", hold, forward=(forward, 1), left=(left, 1), up=(up, 1), yaw_rate=(yaw_rate, 1))
 
     def wrench(self, force: Sequence[float], torque: Sequence[float] = (0.0, 0.0, 0.0),
