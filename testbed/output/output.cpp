@@ -238,6 +238,7 @@ Status write_sonar_frame(const std::filesystem::path& folder, const SonarFrame& 
         {"gather", frame.gather},
         {"fixed_scale", frame.fixed_scale},
         {"sectors", frame.sectors.size()},
+        {"sound_speed_m_s", frame.sound_speed_m_s},
         {"gbuffer", gbuffer},
         {"reflectivity",
          frame.reflectivity.empty() ? nlohmann::json(1.0) : nlohmann::json(frame.reflectivity)},
@@ -252,10 +253,7 @@ Status write_sonar_frame(const std::filesystem::path& folder, const SonarFrame& 
     more["model"]["quality"] =
         sonar::quality_json(*frame.quality, frame.max_error, frame.quality_chosen);
   if (!frame.head.empty()) more["head"] = frame.head;
-  if (frame.sound_speed_m_s > 0.0) {
-    more["model"]["sound_speed_m_s"] = frame.sound_speed_m_s;
-    more["model"]["absorption_db_per_m"] = frame.absorption_db_per_m;
-  }
+  if (frame.absorption_db_per_m) more["model"]["absorption_db_per_m"] = *frame.absorption_db_per_m;
   sonar::SonarFiles files = sonar_files(frame);
   files.arrays = array_format(format.packing);
   return sonar::write_sonar(folder, files, more);

@@ -58,7 +58,8 @@ struct SonarFrame {
   std::optional<sonar::LabelImage> label_energy;  // where labels by energy are named
   Pose world_from_sonar, world_from_head;
   double heading_rad = 0.0;  // of a mechanical scanner's beam, sonar axes, positive to starboard
-  double sound_speed_m_s = 0.0, absorption_db_per_m = 0.0;  // with terms
+  double sound_speed_m_s = 0.0;               // that stands for the time of an echo in its range
+  std::optional<double> absorption_db_per_m;  // with terms
   std::vector<float> noise_power;  // mean of the noise in each range row; empty: none is named
   const sonar::QualityLevel* quality = nullptr;  // the level that sets its sampling, if any
   double max_error = 0.0;                        // the error that chose the level; 0: its name did

@@ -6,6 +6,7 @@
 
 #include "engine/core/intrinsics.hpp"
 #include "sonar/backscatter.hpp"
+#include "sonar/head_pattern.hpp"
 #include "sonar/quality.hpp"
 #include "testbed/sensors/session.hpp"
 
@@ -316,6 +317,8 @@ SonarFrame SonarSensor::decode_head(const SonarState& made, const HeadWork& work
   frame.max_error = sonar.max_error;
   frame.quality_chosen = sonar.quality_chosen;
   frame.heading_rad = work.heading_rad;
+  frame.sound_speed_m_s =
+      sonar::sound_speed_of(sonar.terms.water, -work.world_from_head.position_m.y);
   frame.world_from_sonar = work.world_from_sonar;
   frame.world_from_head =
       work.sampled.views.views.front().world_from_view *
@@ -337,7 +340,6 @@ SonarFrame SonarSensor::decode_head(const SonarState& made, const HeadWork& work
   if (!sonar.terms.level) frame.reflectivity = tables_.reflectivities;
   if (work.buffers && state.gather->has_receiver()) {
     const sonar::Ping& ping = work.ping.ping;
-    frame.sound_speed_m_s = ping.sound_speed_m_s;
     frame.absorption_db_per_m = ping.absorption_db_per_m;
     if (ping.noise_power > 0.0f)
       for (const glm::vec2& gain : ping.gains)

@@ -22,6 +22,7 @@ class Images final : public ImageSink {
     std::vector<std::byte> data;
     Pose pose;
     bool others = false;  // other images of the view are there
+    double sound_speed_m_s = 0.0;
   };
   bool ready(const ImageStream&) override { return ++asked % every == 0; }
   Status accept(const ImageSample& image) override {
@@ -35,7 +36,8 @@ class Images final : public ImageSink {
                     image.height,
                     {image.data.begin(), image.data.end()},
                     image.world_from_frame,
-                    image.view && (!image.view->normals.empty() || !image.view->labels.empty())});
+                    image.view && (!image.view->normals.empty() || !image.view->labels.empty()),
+                    image.sonar ? image.sonar->sound_speed_m_s : 0.0});
     return {};
   }
   Status finish() override {
@@ -125,6 +127,8 @@ TEST_F(ImageConsumers, EachTakesItsStreamsAtItsOwnRate) {
   EXPECT_EQ(echoes.height, 400u);
   EXPECT_EQ(echoes.header.sequence, 2u);
   EXPECT_EQ(echoes.header.captured_ns, 500'000'000);
+  // Mackenzie (1981) at 10 C, 35 psu and the vehicle's 10 to 11 m: 1489.8 m/s and 0.016 a metre.
+  EXPECT_NEAR(echoes.sound_speed_m_s, 1489.97, 0.05);
   EXPECT_EQ(a.counts()[0].given, 6u);
   EXPECT_EQ(b.counts()[1].given, 5u);
 }
@@ -185,10 +189,6 @@ TEST_F(ImageConsumers, AStreamThatIsNotThereIsRefusedInOneLine) {
       "rov_sonar/instances");
 }
 
-TEST_F(ImageConsumers, WishesMayChangeWhileAFrameIsOnItsWay) {
-  Images images;
-  ImageConsumer c = consumer({}, images);
-  FrameRequest none, first, then;
 TEST_F(ImageConsumers, ARateAboveTheSensorsIsRefused) {
   Images images;
   for (const double rate_hz : {4.01, 1e6, -1.0, std::nan(""), HUGE_VAL}) {
@@ -203,6 +203,10 @@ TEST_F(ImageConsumers, ARateAboveTheSensorsIsRefused) {
   EXPECT_TRUE(ImageConsumer::create(scene_, {{"rov_sonar/echoes", 4.0}}, images).ok());
 }
 
+TEST_F(ImageConsumers, WishesMayChangeWhileAFrameIsOnItsWay) {
+  Images images;
+  ImageConsumer c = consumer({}, images);
+  FrameRequest none, first, then;
   EXPECT_TRUE(c.ask(none).empty());
   EXPECT_TRUE(none.cameras.empty() && none.sonars.empty());
   EXPECT_TRUE(c.wish({{"rov_eye/depth"}}).ok());

@@ -138,7 +138,7 @@ std::pair<double, double> spread_over_closed_form_db(const SonarFrame& frame, do
     // through the pattern.
     const double down = height_m / r, beam = pattern->amplitude(std::asin(down));
     const double closed = std::pow(beam, 4) * down * down / (r * r * r) *
-                          std::pow(10.0, -0.2 * frame.absorption_db_per_m * r);
+                          std::pow(10.0, -0.2 * *frame.absorption_db_per_m * r);
     for (std::uint32_t c = 0; c < image.n_azimuth; ++c) {
       double sum = 0.0;
       for (std::uint32_t i = 0; i < kAveraged; ++i)
