@@ -40,7 +40,7 @@ bool no_numpy() {
   return std::system("/usr/bin/python3 -c 'import numpy' 2>/dev/null") != 0;
 }
 
-constexpr const char* kShort = " --set seconds=6 --set height_m=8 --set slope_deg=[0,8] ";
+constexpr const char* kShort = " --runs 1 --set seconds=6 --set height_m=8 --set slope_deg=[0,8] ";
 
 nlohmann::json runs_of(const fs::path& folder) {
   nlohmann::json measures;
