@@ -27,6 +27,13 @@ TimeNs period_of(const XrFrameState& state) {
   return told_ns >= kLeast_ns && told_ns <= kMost_ns ? told_ns : kUnknown_ns;
 }
 
+// The left upper part of an image of the runtime that a picture fills, texel by texel.
+VkExtent2D part_of(const graph::FrameGraph& graph, graph::ImageHandle picture,
+                   const gpu::ImageDesc& image) {
+  const graph::ResourceDecl& drawn = graph.declaration().resources[picture.resource];
+  return {std::min(drawn.width, image.width), std::min(drawn.height, image.height)};
+}
+
 class OpenXrHeadset final : public Headset {
  public:
   OpenXrHeadset(const HeadsetOptions& options, ActionTable actions)
@@ -90,8 +97,7 @@ class OpenXrHeadset final : public Headset {
   Pose world_from_stage_;
   bool in_frame_ = false;  // between xrBeginFrame and xrEndFrame
   XrTime display_at_ = 0;
-  std::vector<Views::Depth> depths_;  // of each group this frame
-  std::vector<bool> projected_;       // groups with a picture this frame
+  std::vector<Views::Drawn> drawn_;  // of each group this frame
 };
 
 Status OpenXrHeadset::connect() {
@@ -244,8 +250,7 @@ Status OpenXrHeadset::begin(DisplayFrame& frame) {
   in_frame_ = true;
   not_declared_ = {};
   display_at_ = state.predictedDisplayTime;
-  depths_.assign(parts_.views->swapchains().size(), {});
-  projected_.assign(depths_.size(), false);
+  drawn_.assign(parts_.views->swapchains().size(), {});
   frame.display_at_ns = runtime_->to_host(display_at_);
   frame.period_ns = period_of(state);
   if (!state.shouldRender) return {};
@@ -321,17 +326,18 @@ Status OpenXrHeadset::declare_layers(graph::FrameGraph& graph, std::span<const L
 Status OpenXrHeadset::declare_projection(graph::FrameGraph& graph, const ProjectionLayer& layer) {
   Views::Group& group = parts_.views->swapchains()[layer.group];
   NERITIC_TRY(const gpu::Image* const color, group.color->acquire());
-  NERITIC_TRY_STATUS(presenter_->declare(graph, color->desc().name, layer.color, *color, true));
-  projected_[layer.group] = true;
+  Views::Drawn& drawn = drawn_[layer.group];
+  // The runtime scales a smaller picture: to do it here too would cost as much as all else that is
+  // drawn at a fifth of the width.
+  drawn.color = part_of(graph, layer.color, color->desc());
+  NERITIC_TRY_STATUS(
+      presenter_->declare(graph, color->desc().name, layer.color, *color, drawn.color, true));
   if (!layer.depth || !group.depth) return {};
-  // A picture of another size is scaled, but means of depths are no depths: a smaller one fills a
-  // corner of the runtime's image, and the layer names that part.
-  const graph::ResourceDecl& drawn = graph.declaration().resources[layer.depth.resource];
-  const VkExtent2D part{drawn.width, drawn.height};
   NERITIC_TRY(const gpu::Image* const depth, group.depth->acquire());
   graph.output(copy_depth(graph, depth->desc().name, layer.depth, graph.import_image(*depth, {})),
                graph::Access::kDepthAttachment);
-  depths_[layer.group] = {layer.near_m, part};
+  drawn.depth = part_of(graph, layer.depth, depth->desc());
+  drawn.near_m = layer.near_m;
   return {};
 }
 
@@ -349,13 +355,14 @@ Status OpenXrHeadset::end(bool submitted) {
   std::vector<const XrCompositionLayerBaseHeader*> layers;
   if (submitted) {
     bool whole = true;
-    for (std::size_t i = 0; i < projected_.size(); ++i) {
+    for (std::size_t i = 0; i < drawn_.size(); ++i) {
       Views::Group& group = parts_.views->swapchains()[i];
-      if (projected_[i]) NERITIC_TRY_STATUS(group.color->release());
-      if (depths_[i].near_m > 0.0) NERITIC_TRY_STATUS(group.depth->release());
-      whole = whole && projected_[i];
+      const bool projected = drawn_[i].color.width > 0;
+      if (projected) NERITIC_TRY_STATUS(group.color->release());
+      if (drawn_[i].near_m > 0.0) NERITIC_TRY_STATUS(group.depth->release());
+      whole = whole && projected;
     }
-    if (whole && !projected_.empty()) layers.push_back(parts_.views->layer(depths_));
+    if (whole && !drawn_.empty()) layers.push_back(parts_.views->layer(drawn_));
     NERITIC_TRY(const auto panels, parts_.panels->finish(world_from_stage_, layers.size()));
     layers.insert(layers.end(), panels.begin(), panels.end());
   } else {

@@ -35,8 +35,9 @@ Status Panels::declare(graph::FrameGraph& graph, const PanelLayer& panel) {
                                                  .height = size.height}));
     }
     NERITIC_TRY(const gpu::Image* const target, kept.chain->acquire());
-    NERITIC_TRY_STATUS(
-        presenter_.declare(graph, "headset panel " + panel.name, panel.image, *target, false));
+    NERITIC_TRY_STATUS(presenter_.declare(graph, "headset panel " + panel.name, panel.image,
+                                          *target, {target->desc().width, target->desc().height},
+                                          false));
   }
   if (panel.image || kept.drawn) shown_.push_back({panel, &kept});
   return {};

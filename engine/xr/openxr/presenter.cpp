@@ -8,6 +8,7 @@ namespace {
 
 struct PresentData {
   graph::ImageHandle from, to;
+  VkExtent2D part{};
 };
 
 void record(const PresentData& data, const gpu::Pipeline& pipeline, VkSampler sampler,
@@ -20,7 +21,7 @@ void record(const PresentData& data, const gpu::Pipeline& pipeline, VkSampler sa
   color.loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
   color.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
   VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
-  rendering.renderArea.extent = {desc.width, desc.height};
+  rendering.renderArea.extent = data.part;
   rendering.layerCount = 1;
   rendering.viewMask = desc.layers > 1 ? (1u << desc.layers) - 1 : 0;
   rendering.colorAttachmentCount = 1;
@@ -28,7 +29,8 @@ void record(const PresentData& data, const gpu::Pipeline& pipeline, VkSampler sa
   const VkCommandBuffer cmd = context.cmd();
   vkCmdBeginRendering(cmd, &rendering);
   const VkViewport viewport{
-      0.0f, 0.0f, static_cast<float>(desc.width), static_cast<float>(desc.height), 0.0f, 1.0f};
+      0.0f, 0.0f, static_cast<float>(data.part.width), static_cast<float>(data.part.height),
+      0.0f, 1.0f};
   vkCmdSetViewport(cmd, 0, 1, &viewport);
   vkCmdSetScissor(cmd, 0, 1, &rendering.renderArea);
   vkCmdSetCullMode(cmd, VK_CULL_MODE_NONE);
@@ -76,7 +78,8 @@ Status Presenter::make_ready(VkFormat format, std::uint32_t layers, bool opaque)
 }
 
 Status Presenter::declare(graph::FrameGraph& graph, const std::string& pass,
-                          graph::ImageHandle from, const gpu::Image& target, bool opaque) {
+                          graph::ImageHandle from, const gpu::Image& target, VkExtent2D part,
+                          bool opaque) {
   NERITIC_TRY(const gpu::Pipeline* const pipeline,
               pipeline_for(target.desc().format, target.desc().layers, opaque));
   // The runtime has finished with it, and its old contents do not matter.
@@ -85,6 +88,7 @@ Status Presenter::declare(graph::FrameGraph& graph, const std::string& pass,
       pass,
       [&](graph::PassBuilder& builder, PresentData& d) {
         d.from = from;
+        d.part = part;
         builder.read(from, graph::Access::kSampledFragment);
         d.to = builder.write(to, graph::Access::kColorAttachment);
       },

@@ -17,10 +17,11 @@ class Presenter {
   static Result<std::unique_ptr<Presenter>> create(gpu::Device& device);
   // Makes a pipeline before the frame that needs it.
   Status make_ready(VkFormat format, std::uint32_t layers, bool opaque);
-  // from: sRGB-encoded, colour multiplied by alpha, as many layers as target, scaled to its size.
-  // opaque: alpha counts as 1. Adds a pass of that name; the image ends as the runtime wants it.
+  // from: sRGB-encoded, colour multiplied by alpha, as many layers as target, scaled to the left
+  // upper part of it; the rest becomes undefined. opaque: alpha counts as 1. Adds a pass of that
+  // name; the image ends as the runtime wants it.
   Status declare(graph::FrameGraph& graph, const std::string& pass, graph::ImageHandle from,
-                 const gpu::Image& target, bool opaque);
+                 const gpu::Image& target, VkExtent2D part, bool opaque);
 
  private:
   explicit Presenter(gpu::Device& device) : device_(device) {}

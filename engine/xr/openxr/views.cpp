@@ -11,6 +11,10 @@ namespace {
 // Height of the eyes of a standing adult of 1.7 m over the floor.
 constexpr double kEyes_m = 1.6;
 
+XrExtent2Di extent_of(const VkExtent2D& extent) {
+  return {static_cast<std::int32_t>(extent.width), static_cast<std::int32_t>(extent.height)};
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Views>> Views::create(Runtime& runtime, const Session& session,
@@ -264,7 +268,7 @@ std::vector<ViewGroup> Views::groups() const {
   return out;
 }
 
-const XrCompositionLayerBaseHeader* Views::layer(std::span<const Depth> depths) {
+const XrCompositionLayerBaseHeader* Views::layer(std::span<const Drawn> drawn) {
   layer_views_.assign(views_.size(), {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW});
   layer_depths_.assign(views_.size(), {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR});
   for (std::size_t g = 0; g < groups_.size(); ++g)
@@ -273,16 +277,16 @@ const XrCompositionLayerBaseHeader* Views::layer(std::span<const Depth> depths) 
       view.pose = views_[groups_[g].first + i].pose;
       view.fov = views_[groups_[g].first + i].fov;
       view.subImage = groups_[g].color->sub_image(static_cast<std::uint32_t>(i));
-      if (!(depths[g].near_m > 0.0) || !groups_[g].depth) continue;
+      view.subImage.imageRect.extent = extent_of(drawn[g].color);
+      if (!(drawn[g].near_m > 0.0) || !groups_[g].depth) continue;
       // Reversed: 0 is at infinity, 1 at near_m.
       XrCompositionLayerDepthInfoKHR& depth = layer_depths_[groups_[g].first + i];
       depth.subImage = groups_[g].depth->sub_image(static_cast<std::uint32_t>(i));
-      depth.subImage.imageRect.extent = {static_cast<std::int32_t>(depths[g].part.width),
-                                         static_cast<std::int32_t>(depths[g].part.height)};
+      depth.subImage.imageRect.extent = extent_of(drawn[g].depth);
       depth.minDepth = 0.0f;
       depth.maxDepth = 1.0f;
       depth.nearZ = std::numeric_limits<float>::infinity();
-      depth.farZ = static_cast<float>(depths[g].near_m);
+      depth.farZ = static_cast<float>(drawn[g].near_m);
       view.next = &depth;
     }
   layer_.space = session_.stage();

@@ -34,14 +34,14 @@ class Views {
   };
   std::vector<Group>& swapchains() { return groups_; }
 
-  // The depth of a group's views, in the left upper part of the runtime's images.
-  struct Depth {
-    double near_m = 0.0;  // 0: without
-    VkExtent2D part{};
+  // What a frame drew of a group's views: the left upper parts of the runtime's images.
+  struct Drawn {
+    VkExtent2D color{}, depth{};  // 0 x 0: no picture
+    double near_m = 0.0;          // of the depth; 0: without
   };
-  // The composition layer of what the newest locate found; valid until the next call. One depth a
+  // The composition layer of what the newest locate found; valid until the next call. One item a
   // group.
-  const XrCompositionLayerBaseHeader* layer(std::span<const Depth> depths);
+  const XrCompositionLayerBaseHeader* layer(std::span<const Drawn> drawn);
 
  private:
   Views(Runtime& runtime, const Session& session) : runtime_(runtime), session_(session) {}

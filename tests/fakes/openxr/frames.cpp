@@ -88,10 +88,12 @@ std::string view_errors(Runtime& rt, const Session& session,
     const double w = std::abs(glm::dot(shown.rotation, eye.rotation));
     radians = std::max(radians, 2 * std::acos(std::min(w, 1.0)));
   }
-  return fmt::format("{:.2f} mm {:.2f} deg", metres * 1000, glm::degrees(radians));
+  const XrExtent2Di& size = layer.views[0].subImage.imageRect.extent;
+  return fmt::format("{:.2f} mm {:.2f} deg of {} x {}", metres * 1000, glm::degrees(radians),
+                     size.width, size.height);
 }
 
-// "frame 7 display 10155555555 projection 0.00 mm 0.00 deg quad cylinder"
+// "frame 7 display 10155555555 projection 0.00 mm 0.00 deg of 640 x 600 quad cylinder"
 void log_frame(Runtime& rt, const Session& session, const XrFrameEndInfo& info) {
   std::string line = fmt::format("frame {} display {}", session.begun.number, info.displayTime);
   for (std::uint32_t i = 0; i < info.layerCount; ++i) {

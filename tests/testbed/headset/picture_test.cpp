@@ -112,8 +112,8 @@ TEST_F(HeadsetPicture, EachEyeSeesABallWhereItIsWhenThePictureIsShown) {
 }
 
 // No machine draws a frame in a millisecond, so that the governor draws coarser views. Their depth
-// goes to the runtime all the same: late frames need it most. It fits the picture, which is scaled
-// to the runtime's size.
+// goes to the runtime all the same: late frames need it most. It fits the picture, which the
+// runtime scales.
 TEST_F(HeadsetPicture, ACoarserPictureHasItsDepthToo) {
   fakes::FakeHeadset fake(
       fmt::format("size 240 220\nfov -52 42 45 -49\neye_distance 0.064\nperiod 0.001\n"
@@ -132,6 +132,9 @@ TEST_F(HeadsetPicture, ACoarserPictureHasItsDepthToo) {
     EXPECT_NEAR(depth.x_px, want.x_px, 0.25);
     EXPECT_NEAR(depth.y_px, want.y_px, 0.25);
     EXPECT_NEAR(depth.nearest_m, 3.0 - kRadius_m, 0.05);
+    EXPECT_NE(fake.log().find(fmt::format(" of {} x {}", depth.width_px, depth.height_px)),
+              std::string::npos)
+        << "the picture is of another size";
     const Place lit = brightest(14, view);
     EXPECT_NEAR(lit.x_px, depth.x_px / depth.width_px * 240.0, 3.0);
     EXPECT_NEAR(lit.y_px, depth.y_px / depth.height_px * 220.0, 10.0);
