@@ -57,6 +57,8 @@ BufferHandle PassBuilder::write(BufferHandle buffer, Access access) {
 void PassBuilder::side_effect() {
   graph_.declaration_.passes[pass_].side_effect = true;
 }
+// A part of the declaration, by which plans are found: a text that changes with each frame would
+// have each of them compiled anew.
 void PassBuilder::terms(std::string names) {
   graph_.declaration_.passes[pass_].terms = std::move(names);
 }

@@ -80,7 +80,8 @@ Result<graph::ImageHandle> WaterPasses::declare_particles(
   const Data& pass = graph.add_pass<Data>(
       prefix + "particles",
       [&](graph::PassBuilder& builder, Data& data) {
-        builder.terms(fmt::format("{} particles{}", particles.size(), shafts ? " in shafts" : ""));
+        // Without their number, which changes with each frame: each would have a plan of its own.
+        builder.terms(shafts ? "particles in shafts" : "particles");
         data.hdr = builder.write(hdr, graph::Access::kColorAttachment);
         builder.read(gbuffer.depth, graph::Access::kDepthTestAndSampled);
         if (shafts)

@@ -2,6 +2,7 @@
 // keeps it, and under waves some flakes shine and others dim, while their mean stays.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/render/lighting.hpp"
@@ -98,6 +99,30 @@ TEST_F(ParticleShaftsGpu, SnowUnderWavesGlittersAboutTheSameMean) {
   EXPECT_GT(std::abs(lit.left / plain.left - lit.right / plain.right) +
                 std::abs(lit.left / plain.left - 1.0),
             1e-3);
+}
+
+// Their number differs with each frame. A plan of its own for each took a tenth of a headset's
+// frame.
+TEST_F(ParticleShaftsGpu, FramesOfAnotherNumberOfParticlesShareOnePlan) {
+  scene::Scene drifting = scene_of({.snow = true});
+  drifting.water->snow->drift_m_s = Vec3(0.3, 0.0, 0.0);
+  NERITIC_ASSERT_OK(const auto session, Session::create(device(), drifting));
+  FrameRequest request;
+  request.cameras = {0};
+  std::vector<graph::GraphDecl> declared;
+  for (const double time_s : {0.0, 0.5, 1.0, 1.5}) {
+    request.time_s = time_s;
+    graph::FrameGraph graph;
+    NERITIC_ASSERT_OK(const auto frame, session->declare(graph, request));
+    declared.push_back(graph.declaration());
+  }
+  const auto is_particles = [](const graph::PassDecl& pass) {
+    return pass.name.ends_with("particles");
+  };
+  EXPECT_TRUE(std::ranges::any_of(declared[0].passes, is_particles));
+  // The first frame may make what the later ones keep.
+  EXPECT_TRUE(declared[2] == declared[1]);
+  EXPECT_TRUE(declared[3] == declared[1]);
 }
 
 }  // namespace
