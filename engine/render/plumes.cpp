@@ -2,6 +2,7 @@
 // free.
 #include <algorithm>
 #include <numbers>
+#include <optional>
 
 #include "engine/core/random.hpp"
 #include "engine/render/particles.hpp"
@@ -172,7 +173,7 @@ void add_bubbles(const scene::MotionSource& motion, const scene::BubbleSource& s
     Vec3 first_m, last_m;
     Vec2 off;
   };
-  std::vector<Gulp> places(static_cast<std::size_t>(gulps));
+  std::vector<std::optional<Gulp>> places(static_cast<std::size_t>(gulps));
   std::vector<WorldParticle> parts;
   const double share = leaks ? 1.0 : kGulpShare;
   for (std::int64_t breath = last - breaths; breath <= last; ++breath) {
@@ -181,15 +182,19 @@ void add_bubbles(const scene::MotionSource& motion, const scene::BubbleSource& s
     // A fraction of a bubble is one by chance.
     const auto n = static_cast<std::uint64_t>(std::floor(count + random_uniform(key, 0)));
     const double breath_s = first_s + period_s * static_cast<double>(breath);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const auto place_at = [&](double gulp) {
-        return motion.world_from_joint(static_cast<std::size_t>(source.object), source.joint,
-                                       breath_s + out_s * gulp / gulps) *
-               source.position_m;
-      };
-      places[i] = {place_at(double(i)), place_at(double(i) + share),
-                   within_circle(key, kOfGulps + 2 * i)};
-    }
+    const auto place_at = [&](double gulp) {
+      return motion.world_from_joint(static_cast<std::size_t>(source.object), source.joint,
+                                     breath_s + out_s * gulp / gulps) *
+             source.position_m;
+    };
+    // Once a bubble is left of it: a swimmer's joints at another time cost as much as ten bubbles.
+    places.assign(places.size(), std::nullopt);
+    const auto gulp_at = [&](std::size_t i) -> const Gulp& {
+      if (!places[i])
+        places[i] = Gulp{place_at(double(i)), place_at(double(i) + share),
+                         within_circle(key, kOfGulps + 2 * i)};
+      return *places[i];
+    };
     for (std::uint64_t i = 0; i < n; ++i) {
       const std::uint64_t index = 64 * (i + 1);
       // Most of a breath leaves early, in gulps; a leak trickles.
@@ -211,7 +216,7 @@ void add_bubbles(const scene::MotionSource& motion, const scene::BubbleSource& s
       const double behind_m =
           broken ? (age_s - broken_s) * bubble_speed_m_s(own_m) + kPartWidths * own_m : 0.0;
       if (rise.m - behind_m > source.height_m) continue;
-      const Gulp& from = places[static_cast<std::size_t>(gulp)];
+      const Gulp& from = gulp_at(static_cast<std::size_t>(gulp));
       Course course{glm::mix(from.first_m, from.last_m, within), Vec2(0.0)};
       // About where it is, with room for the plume's width, its swing and its growth.
       if (sight && !sight->may_see(course.from_m + Vec3(0.0, rise.m, 0.0) - sight->origin_m(),

@@ -203,6 +203,21 @@ double SkylightGrid::at(const Vec3& place_m) const {
   const Vec3 p = (place_m - low_m) / cell_m - 0.5;
   const Vec3 base = glm::floor(p), part = p - base;
   double sum = 0.0;
+  if (base.x >= 0 && base.y >= 0 && base.z >= 0 && base.x + 1 < nx && base.y + 1 < ny &&
+      base.z + 1 < nz) {
+    // Within the grid, where thousands of particles ask.
+    const std::size_t first =
+        cell_of(static_cast<std::size_t>(base.x), static_cast<std::size_t>(base.y),
+                static_cast<std::size_t>(base.z));
+    const std::size_t step[] = {cell_of(1, 0, 0), cell_of(0, 1, 0), cell_of(0, 0, 1)};
+    const Vec3 w[] = {1.0 - part, part};
+    for (int i = 0; i < 8; ++i) {
+      const int x = i & 1, y = i >> 1 & 1, z = i >> 2;
+      sum += w[x].x * w[y].y * w[z].z *
+             double(open[first + (x ? step[0] : 0) + (y ? step[1] : 0) + (z ? step[2] : 0)]);
+    }
+    return std::isfinite(sum) ? sum : 1.0;
+  }
   for (int i = 0; i < 8; ++i) {
     const Vec3 corner(i & 1, i >> 1 & 1, i >> 2);
     const Vec3 c = base + corner, w = glm::mix(1.0 - part, part, corner);

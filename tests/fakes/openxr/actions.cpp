@@ -255,15 +255,17 @@ const ActionValue& state_of(Call& call, XrSession handle, const XrActionStateGet
   Session& session = call.get<Session>(handle);
   const auto& info = call.in(get);
   const Action& action = call.get<Action>(info.action);
-  call.require(action.set.attached, XR_ERROR_ACTIONSET_NOT_ATTACHED,
+  if (!action.set.attached)
+    call.fault(XR_ERROR_ACTIONSET_NOT_ATTACHED,
                "the action set of " + action.name + " is not attached to the session");
-  call.require(action.kind == kind, XR_ERROR_ACTION_TYPE_MISMATCH,
-               "the action " + action.name + " is of another type");
+  if (action.kind != kind)
+    call.fault(XR_ERROR_ACTION_TYPE_MISMATCH, "the action " + action.name + " is of another type");
   std::string top;
   if (info.subactionPath != XR_NULL_PATH) {
     top = call.path(info.subactionPath);
     const auto& tops = action.subactions;
-    call.require(std::find(tops.begin(), tops.end(), top) != tops.end(), XR_ERROR_PATH_UNSUPPORTED,
+    if (std::find(tops.begin(), tops.end(), top) == tops.end())
+      call.fault(XR_ERROR_PATH_UNSUPPORTED,
                  "the action " + action.name + " was not made with the subaction path " + top);
   }
   return session.action_states[action.handle].by_top[top];

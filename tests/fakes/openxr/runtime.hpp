@@ -108,7 +108,7 @@ class Call {
   }
   template <class T>
   T* not_null(T* pointer, const char* name) {
-    require(pointer, XR_ERROR_VALIDATION_FAILURE, std::string(name) + " is a null pointer");
+    if (!pointer) fault(XR_ERROR_VALIDATION_FAILURE, std::string(name) + " is a null pointer");
     return pointer;
   }
   // The two-call way of an array: capacity 0 asks for the count.

@@ -103,9 +103,9 @@ class ThreadTime final : public SampleSource {
 
 using HeadsetCost = HeadsetRun;
 
-// The aim is 1.5 ms. On a quiet core it takes 1.1, the fake runtime's strict checks (a sixth)
-// included, and up to 1.6 beside neighbours that take its caches; on a Xeon in a virtual
-// machine 2.5 to 2.8, quiet or not, in this yardstick: so the limit leaves room for both. With the
+// The aim is 1.5 ms. A quiet core takes less; a Xeon in a virtual machine beside neighbours that
+// take its caches 2.3 to 2.5 in this yardstick, so that the limit leaves room for both. A third of
+// it is the bubbles, an eighth the snow, an eighth the fake runtime's strict checks. With the
 // validation layers it is far more: they are off.
 TEST_F(HeadsetCost, AStereoFrameOfTheWholeDiveTakesLittleOfOneCore) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -125,7 +125,7 @@ TEST_F(HeadsetCost, AStereoFrameOfTheWholeDiveTakesLittleOfOneCore) {
   with(DiveHudOptions{.layouts = {hud::LayoutKind::kWrist}});
   NERITIC_ASSERT_STATUS(dive(scene, 60));
   RecordProperty("frame_ms", fmt::format("{:.3f}", spent.frame_ms(12)));
-  EXPECT_LT(spent.frame_ms(12), 3.5);
+  EXPECT_LT(spent.frame_ms(12), 3.0);
 }
 
 // The same dive, of which the measurement leaves the layers out.
