@@ -26,6 +26,12 @@ TEST(CommandLine, HelpOfASubcommandNamesTheProgram) {
   EXPECT_THAT(said({"--help"}), HasSubstr("Usage: neritic"));
 }
 
+TEST(CommandLine, ACommandThatThereIsNotHasNoHelp) {
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"replay"}, {"replay", "--help"}, {"replay", "a"}})
+    EXPECT_THAT(said(words), HasSubstr("found command 'replay'; accepted: render, sonar, dive"));
+}
+
 TEST(CommandLine, VersionIsOneLine) {
   EXPECT_THAT(said({"--version"}), MatchesRegex("neritic [0-9]+\\.[0-9]+\\.[0-9]+\n"));
 }

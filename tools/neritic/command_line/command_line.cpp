@@ -76,21 +76,25 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   add_hud(app, line.run);
   add_simulate(app, line);
   add_doctor(app, line.run);
+  // The words of a command that there is not may be anything, --help too.
+  const auto no_command = [&]() -> Error {
+    std::string names;
+    for (const CLI::App* command : app.get_subcommands(nullptr))
+      names += (names.empty() ? "" : ", ") + command->get_name();
+    return refusal("", fmt::format("command '{}'", arguments[0]), names);
+  };
+  const bool names_one = !arguments.empty() && !arguments[0].starts_with('-');
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(),
                                        arguments.rend()));  // back to front, as it wants them
   } catch (const CLI::CallForHelp&) {
     const auto chosen = app.get_subcommands();
+    if (chosen.empty() && names_one) return no_command();
     line.help = chosen.empty() ? app.help() : chosen.front()->help(app.get_name());
   } catch (const CLI::CallForVersion& version) {
     line.help = std::string(version.what()) + "\n";
   } catch (const CLI::ParseError& error) {
-    if (app.get_subcommands().empty() && !arguments.empty() && !arguments[0].starts_with('-')) {
-      std::string names;
-      for (const CLI::App* command : app.get_subcommands(nullptr))
-        names += (names.empty() ? "" : ", ") + command->get_name();
-      return refusal("", fmt::format("command '{}'", arguments[0]), fmt::format("{}", names));
-    }
+    if (app.get_subcommands().empty() && names_one) return no_command();
     const auto chosen = app.get_subcommands();
     const CLI::App& command = chosen.empty() ? app : *chosen.front();
     return bad_input("{} (see neritic {}--help)", what_was_wrong(app, command, arguments, error),
