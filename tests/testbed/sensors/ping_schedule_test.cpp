@@ -55,7 +55,8 @@ TEST(PingSchedule, OnBeatASensorIsDueAtMultiplesOfItsPeriodWhereverItBegins) {
   EXPECT_EQ(steps_due(10, 25, 72), (std::vector<int>{48, 72}));
   // Where no step falls on a multiple, the first one after it.
   EXPECT_EQ(steps_due(7, 1, 140), (std::vector<int>{35, 69, 103, 138}));
-  EXPECT_EQ(steps_due(1000, 3, 6), (std::vector<int>{3, 4, 5, 6}));
+  // Step 3, 12.5 ms, begins between two multiples; then each step has passed one.
+  EXPECT_EQ(steps_due(1000, 3, 6), (std::vector<int>{4, 5, 6}));
 }
 
 TEST(PingSchedule, OnBeatALateFrameMovesNoLaterOne) {
