@@ -67,6 +67,9 @@ struct Request {
 };
 
 // The first frame is the map, a second one the bytes of a state. kBadInput: "OP: KEY: found ...;
-// X
+// accepted: ...". id_out: the request's number, where it can be read, for the refusal; nothing
+// where it cannot.
+Result<Request> parse_request(const std::vector<net::Bytes>& frames,
+                              std::optional<std::uint64_t>& id_out);
 
 }  // namespace neritic::testbed
