@@ -133,8 +133,9 @@ class Judging(unittest.TestCase):
         text = ('[experiment]\nkind = "task"\nruns = 2\n[task]\nscene = "s.toml"\ncontroller = "mine.py"\n[task.settings]\n'
                 'b = { default = 0.0, meaning = "" }\n[[stages]]\nname = "a"\nuntil = "time > 1"\n'
                 '[[measures]]\nname = "m"\nof = "time"\n' + tables)
+        robot = "class Controller:\n    def act(self):\n        pass\n"
         with tempfile.TemporaryDirectory() as folder:
-            for name, content in (("t.toml", text), ("s.toml", ""), ("mine.py", ""), ("yours.py", "")):
+            for name, content in (("t.toml", text), ("s.toml", ""), ("mine.py", robot), ("yours.py", robot)):
                 pathlib.Path(folder, name).write_text(content)
             plan = scenario.Scenario(os.path.join(folder, "t.toml"), {"task": task.Task}, sets=[s.replace("DIR", folder) for s in sets])
             results = [{"condition": r.condition, "seed": r.seed, "settings": r.settings, "failure": None, "processor_s": 0.0,
@@ -174,14 +175,15 @@ class Judging(unittest.TestCase):
         tables = '[factors]\nb = [0.0, 3.0]\n' + self.LIMIT + 'where = { b = 3.0 }\n'
         told, verdicts = self.compare(["b=0.0"], {"baseline": 0.5}, tables)
         self.assertEqual((verdicts, told["passed"]), ({"median of m (b 3)": "not run"}, True))
-        self.assertFalse(self.compare([], {"baseline": 0.5}, tables.replace("b = 3.0 }", "b = 4.0 }"))[0]["passed"])  # nobody left it out
+        with self.assertRaisesRegex(scenario.Refused, "which no run has"):  # nobody left it out
+            self.compare([], {"baseline": 0.5}, tables.replace("b = 3.0 }", "b = 4.0 }"))
 
     def test_equal_runs_have_no_interval(self):
         def told(series):
             results = [{"condition": {}, "seed": i, "settings": {}, "measures": {"m": 2.0, "y": True}, "failure": None, "series": s, "processor_s": 0}
                        for i, s in enumerate(series)]
             kind = SimpleNamespace(MEASURES={"m": ("s", ""), "y": ("yes or no", "")})
-            plan = SimpleNamespace(kind=kind, criteria=[], name="", title="", about="", kind_name="", seed=1, settings={}, vary={}, factors={})
+            plan = SimpleNamespace(kind=kind, criteria=[], name="", title="", about="", kind_name="", seed=1, settings={}, vary={}, factors={}, added=[], replaced=set())
             condition, = summary.summarise(plan, results)["conditions"]
             return condition["equal"], [condition["measures"][k]["low"] for k in "my"], report._condition_table(plan, condition)
         equal, low, page = told([{"t": [1]}] * 8)
@@ -433,7 +435,7 @@ class Files(unittest.TestCase):
         import task
         texts = {"t.toml": self.TASK, "scene.toml": 'include = ["parts/a.toml"]\n', "parts/a.toml": 'include = "b.toml"\n',
                  "parts/b.toml": '[[objects]]\nname = "x"\nmodel = "x.gltf"\n', "parts/x.gltf": '{"buffers": [{"uri": "x.bin"}]}', "parts/x.bin": "1",
-                 "mine.py": "import os, json\nimport near\nfrom far.deep import thing\nW = os.path.join('w', 'no')\nX = 'weights.txt'\nclass Controller: pass\n",
+                 "mine.py": "import os, json\nimport near\nfrom far.deep import thing\nW = os.path.join('w', 'no')\nX = 'weights.txt'\nclass Controller:\n    def act(self): pass\n",
                  "near.py": "import math, mine\ndef late():\n    import later\n", "later.py": "", "far/__init__.py": "", "far/deep/__init__.py": "",
                  "far/deep/thing.py": "from . import other\nfrom ..side import x\n", "far/deep/other.py": "", "far/side.py": "x = 1", "weights.txt": "1"}
         with tempfile.TemporaryDirectory() as folder:
@@ -457,8 +459,8 @@ class Files(unittest.TestCase):
                     self.assertEqual(files(), before, name)
             write("stranger.py", "1")
             self.assertEqual(files(), before)
-            write("mine.py", "def (")  # the run tells what is wrong with it
-            self.assertNotEqual(files(), before)
+            write("mine.py", "def (")  # refused before anything runs
+            self.assertRaises(scenario.Refused, files)
 
 
 class Progress(unittest.TestCase):
