@@ -342,7 +342,8 @@ bool Reading::sound(Head head, std::uint64_t at) const {
       return head.length == 4;
     case McapOp::kFooter:
       return head.length == 20 &&
-             at + kRecordHead_bytes + head.length + kMcapMagic.size() >= source_.size();
+             (in_summary_ ||
+              at + kRecordHead_bytes + head.length + kMcapMagic.size() >= source_.size());
     case McapOp::kSchema:
     case McapOp::kChannel:
     case McapOp::kMessage:
