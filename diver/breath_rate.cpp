@@ -354,9 +354,9 @@ BreathEstimate newest_by_autocorrelation(std::span<const BreathFrame> history, d
 
 }  // namespace
 
-// Of kMultiBand besides: where half of the rate is slower than the window can measure, a history
-// that finds that half is believed; until it lasts 40 s such a rate is none if anything speaks for
-// its half.
+// kMultiBand measures a rate whose half is too slow for the window in the history, too. If the
+// history finds that half, it is believed. Until the history lasts 40 s, such a rate is refused if
+// anything speaks for its half.
 BreathEstimate estimate_newest_breath(std::span<const BreathFrame> history, double window_s,
                                       const BreathBands& front, BreathEstimator estimator) {
   if (estimator == BreathEstimator::kAutocorrelation)

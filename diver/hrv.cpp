@@ -111,8 +111,8 @@ IntervalKind IntervalJudge::kind_of(double length_s) {
   return IntervalKind::kEctopic;
 }
 
-// Of an R wave that is less than half as high as usual, noise was taken for it: it may be anywhere
-// in the detector's window of 150 ms.
+// An R wave less than half as high as usual is noise that was taken for it: the wave itself may be
+// anywhere in the detector's window of 150 ms.
 double IntervalJudge::jitter_of(const Beat& beat) {
   constexpr double kNoise = 0.5, kAnywhere_s = 0.150 / 3.4641016151377544;  // sqrt(12)
   const double size = std::abs(beat.amplitude);

@@ -1,6 +1,6 @@
-// What a diver is to do about the alarms that are on: one line for all of them together. It never
-// sends a diver above a ceiling, deeper while there is too much oxygen, or faster while the ascent
-// is too fast. Pure functions; any thread.
+// The advice about the alarms that are on: one line for all of them together. It never sends a
+// diver above a ceiling, deeper while there is too much oxygen, or faster while the ascent is too
+// fast. Pure functions; any thread.
 //
 // The remedies are those that dive computers tell (Suunto D6i user guide, table 5.3; Garmin
 // Descent, "Dive Alerts"): too much oxygen: go up or change to a leaner gas; above the ceiling: go

@@ -12,7 +12,7 @@ struct PictureDetail {
   // Share of the picture's sides that is shaded; a camera's own terms: 1. Above 1 a whole number: a
   // pixel is the mean of so many a side, whatever the camera's terms.
   double resolution = 1.0;
-  double shadow_size = 1.0;  // texels a side of the sun's maps, times those named
+  double shadow_size = 1.0;             // texels a side of the sun's maps, times those named
   std::uint32_t cascades = 4;           // of those named, at most: the widest are kept
   std::uint32_t shadow_samples = 9;     // rings of taps round a shadow's middle
   std::uint32_t visibility_step = 2;    // pixels a side to one of the visibility image: 1 to 4

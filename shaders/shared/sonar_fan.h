@@ -21,7 +21,7 @@ struct SonarFanPush {
   float bins_per_rad;
   float gamma;  // shown brightness = (value gain / full scale)^gamma
   float gain;
-  uint is_power;  // cells are floats of power, shown as amplitudes; else counts
+  uint is_power;   // cells are floats of power, shown as amplitudes; else counts
   uint is_opaque;  // around the fan is the darkest colour; else nothing, and colour is not
                    // multiplied by alpha
 };

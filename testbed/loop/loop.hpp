@@ -106,7 +106,7 @@ class Loop {
   std::uint64_t frames_ = 0, sensed_ = 0;  // frames; those that are for frame sinks
   double wall_s_ = 0.0;
   TimeNs begun_ns_ = 0;
-  std::uint64_t restored_ = 0;  // of the physics, as it was last seen
+  std::uint64_t restored_ = 0;                              // of the physics, as it was last seen
   double end_s_ = std::numeric_limits<double>::infinity();  // the scene time at which it ends
   bool started_ = false, interrupted_ = false, quit_ = false, last_ = false;
 };

@@ -107,6 +107,7 @@ class DiveView final : public FrameView {
   void take_click();
   void switch_lamps();
   std::uint32_t worn_object(const scene::MotionSource& motion, double time_s) const;
+  DiveHudOptions choose_console_sensors();
   void add_inset(FrameRequest& request, const scene::MotionSource& motion);
   void add_console_camera(FrameRequest& request, const scene::MotionSource& motion);
   double seen_s(double time_s) const;

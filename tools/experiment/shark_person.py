@@ -19,7 +19,7 @@ from scenario import SHIPPED, Failed, draw
 from study import now
 
 # The eyes of a diver, from the hips: towards the crown, left, towards the back. The body lies, as divers hover.
-EYES_M = np.array([0.66, 0.0, -0.09])
+EYES_M = np.array([0.786, 0.0, -0.09])
 SCENE = """[sun]
 elevation_deg = 55
 [water]
@@ -40,7 +40,7 @@ yaw_deg = {yaw!r}
 pitch_deg = -90
 [[objects.cameras]]
 name = "eyes"
-position_m = [0, 0.66, -0.16]
+position_m = [0, 0.79, -0.2]
 pitch_deg = 90
 fov_deg = 75
 width = 960

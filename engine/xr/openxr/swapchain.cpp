@@ -18,7 +18,7 @@ struct FormatName {
   VkFormat format;
   const char* name;
 };
-// What a runtime may show or take as depth, without the prefix.
+// The formats that a runtime may offer for colour or depth, each with its name without the prefix.
 #define NERITIC_FORMAT(name) \
   { VK_FORMAT_##name, #name }
 constexpr FormatName kNames[] = {

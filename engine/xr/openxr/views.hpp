@@ -34,7 +34,7 @@ class Views {
   };
   std::vector<Group>& swapchains() { return groups_; }
 
-  // What a frame drew of a group's views: the left upper parts of the runtime's images.
+  // A frame draws a group's views into the left upper parts of the runtime's images, so large.
   struct Drawn {
     VkExtent2D color{}, depth{};  // 0 x 0: no picture
     double near_m = 0.0;          // of the depth; 0: without
