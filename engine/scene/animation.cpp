@@ -91,28 +91,40 @@ struct LocalPose {
   Quat rotation;
 };
 
+// A value of a channel that is no weight.
+void apply(Channel::Path path, const std::vector<double>& v, LocalPose& local) {
+  switch (path) {
+    case Channel::Path::kTranslation:
+      local.translation_m = Vec3(v[0], v[1], v[2]);
+      break;
+    case Channel::Path::kScale:
+      local.scale = Vec3(v[0], v[1], v[2]);
+      break;
+    case Channel::Path::kRotation:
+      local.rotation = unit_or_identity(to_quat(v.data()));
+      break;
+    case Channel::Path::kWeights:
+      break;
+  }
+}
+
 void apply_clip(const Clip& clip, double time_s, std::vector<LocalPose>& locals,
                 std::vector<std::vector<float>>& weights) {
   std::vector<double> v;
   for (const Channel& channel : clip.channels) {
     if (channel.times_s.empty()) continue;
     sample(channel, time_s, v);
-    LocalPose& local = locals[channel.node];
-    switch (channel.path) {
-      case Channel::Path::kTranslation:
-        local.translation_m = Vec3(v[0], v[1], v[2]);
-        break;
-      case Channel::Path::kScale:
-        local.scale = Vec3(v[0], v[1], v[2]);
-        break;
-      case Channel::Path::kRotation:
-        local.rotation = unit_or_identity(to_quat(v.data()));
-        break;
-      case Channel::Path::kWeights:
-        weights[channel.node].assign(v.begin(), v.end());
-        break;
-    }
+    if (channel.path == Channel::Path::kWeights)
+      weights[channel.node].assign(v.begin(), v.end());
+    else
+      apply(channel.path, v, locals[channel.node]);
   }
+}
+
+void apply(const NodePlace& place, LocalPose& local) {
+  local.rotation = place.rotation;
+  local.scale = place.scale;
+  if (place.place_m) local.translation_m = *place.place_m;
 }
 
 Mat4 matrix_of(const LocalPose& local) {
@@ -183,6 +195,14 @@ void add_node(const Model& model, const ModelPose& pose, int index, std::size_t&
   }
 }
 
+LocalPose rest_pose(const Node& node) {
+  return {node.translation_m, node.scale, node.rotation};
+}
+
+Mat4 parent_from_node(const Node& node, const LocalPose& local) {
+  return node.matrix ? *node.matrix : matrix_of(local);
+}
+
 // All nodes as the file has them.
 std::vector<LocalPose> rest_pose(const Model& model, std::vector<std::vector<float>>& weights) {
   const std::size_t n = model.nodes.size();
@@ -190,7 +210,7 @@ std::vector<LocalPose> rest_pose(const Model& model, std::vector<std::vector<flo
   std::vector<LocalPose> locals(n);
   for (std::size_t i = 0; i < n; ++i) {
     const Node& node = model.nodes[i];
-    locals[i] = {node.translation_m, node.scale, node.rotation};
+    locals[i] = rest_pose(node);
     if (node.mesh >= 0)
       weights[i] = node.weights.empty() ? model.meshes[node.mesh].weights : node.weights;
   }
@@ -208,11 +228,40 @@ std::vector<Mat4> matrices_of(const Model& model, const std::vector<LocalPose>& 
     const int i = open.back();
     open.pop_back();
     const Node& node = model.nodes[i];
-    const Mat4 local = node.matrix ? *node.matrix : matrix_of(locals[i]);
+    const Mat4 local = parent_from_node(node, locals[i]);
     model_from_node[i] = node.parent < 0 ? local : model_from_node[node.parent] * local;
     open.insert(open.end(), node.children.begin(), node.children.end());
   }
   return model_from_node;
+}
+
+// A node and all above it, the root first.
+struct Chain {
+  std::vector<int> nodes;
+  std::vector<LocalPose> locals;
+
+  Chain(const Model& model, int node) {
+    for (int i = node; i >= 0; i = model.nodes[i].parent) nodes.push_back(i);
+    std::reverse(nodes.begin(), nodes.end());
+    for (const int i : nodes) locals.push_back(rest_pose(model.nodes[i]));
+  }
+  // nullptr: another node.
+  LocalPose* find(int node) {
+    const auto at = std::find(nodes.begin(), nodes.end(), node);
+    return at == nodes.end() ? nullptr : &locals[static_cast<std::size_t>(at - nodes.begin())];
+  }
+  Mat4 model_from_last(const Model& model) const {
+    Mat4 out = parent_from_node(model.nodes[nodes[0]], locals[0]);
+    for (std::size_t i = 1; i < nodes.size(); ++i)
+      out = out * parent_from_node(model.nodes[nodes[i]], locals[i]);
+    return out;
+  }
+};
+
+// nullptr: the rest pose.
+const Clip* clip_of(const Model& model, int clip) {
+  return clip >= 0 && static_cast<std::size_t>(clip) < model.clips.size() ? &model.clips[clip]
+                                                                          : nullptr;
 }
 
 }  // namespace
@@ -220,26 +269,40 @@ std::vector<Mat4> matrices_of(const Model& model, const std::vector<LocalPose>& 
 ModelPose evaluate_pose(const Model& model, int clip, double time_s, bool loop) {
   ModelPose pose;
   std::vector<LocalPose> locals = rest_pose(model, pose.morph_weights);
-  if (clip >= 0 && static_cast<std::size_t>(clip) < model.clips.size()) {
-    const Clip& chosen = model.clips[clip];
-    apply_clip(chosen, clip_time(time_s, chosen.duration_s, loop), locals, pose.morph_weights);
-  }
+  if (const Clip* chosen = clip_of(model, clip))
+    apply_clip(*chosen, clip_time(time_s, chosen->duration_s, loop), locals, pose.morph_weights);
   pose.model_from_node = matrices_of(model, locals);
   return pose;
 }
 
-ModelPose evaluate_pose(const Model& model, const NodeMotion& motion, double time_s) {
+ModelPose evaluate_pose(const Model& model, const NodeKeys& keys, double time_s) {
   ModelPose pose;
   std::vector<LocalPose> locals = rest_pose(model, pose.morph_weights);
-  const NodeMotion::Key key = key_at(motion, time_s);
-  for (std::size_t i = 0; i < motion.nodes.size(); ++i) {
-    LocalPose& local = locals[static_cast<std::size_t>(motion.nodes[i])];
-    local.rotation = key.rotations[i];
-    local.scale = key.scales[i];
-    if (!key.places_m.empty()) local.translation_m = key.places_m[i];
-  }
+  for (std::size_t i = 0; i < keys.nodes.size(); ++i)
+    apply(place_at(keys, i, time_s), locals[static_cast<std::size_t>(keys.nodes[i])]);
   pose.model_from_node = matrices_of(model, locals);
   return pose;
+}
+
+Mat4 evaluate_node(const Model& model, int node, int clip, double time_s) {
+  Chain chain(model, node);
+  if (const Clip* chosen = clip_of(model, clip)) {
+    std::vector<double> v;
+    for (const Channel& channel : chosen->channels) {
+      LocalPose* local = chain.find(channel.node);
+      if (!local || channel.times_s.empty() || channel.path == Channel::Path::kWeights) continue;
+      sample(channel, clip_time(time_s, chosen->duration_s, true), v);
+      apply(channel.path, v, *local);
+    }
+  }
+  return chain.model_from_last(model);
+}
+
+Mat4 evaluate_node(const Model& model, int node, const NodeKeys& keys, double time_s) {
+  Chain chain(model, node);
+  for (std::size_t i = 0; i < keys.nodes.size(); ++i)
+    if (LocalPose* local = chain.find(keys.nodes[i])) apply(place_at(keys, i, time_s), *local);
+  return chain.model_from_last(model);
 }
 
 Result<int> find_clip(const Model& model, const std::string& wanted, const std::string& place) {

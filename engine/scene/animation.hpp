@@ -15,13 +15,16 @@ struct ModelPose {
   std::vector<std::vector<float>> morph_weights;  // one a node; empty where its mesh has no targets
 };
 
-struct NodeMotion;
+struct NodeKeys;
 
 // The pose at time_s of clip (an index, or -1 for the rest pose). Time wraps at the clip's duration
 // where loop, else it is clamped. A NaN time counts as 0.
 ModelPose evaluate_pose(const Model& model, int clip, double time_s, bool loop = true);
 // The pose at time_s of nodes that something else moves, the others at rest.
-ModelPose evaluate_pose(const Model& model, const NodeMotion& motion, double time_s);
+ModelPose evaluate_pose(const Model& model, const NodeKeys& keys, double time_s);
+// Model_from_node of one node in those poses, bit for bit, for the price of the nodes above it.
+Mat4 evaluate_node(const Model& model, int node, int clip, double time_s);
+Mat4 evaluate_node(const Model& model, int node, const NodeKeys& keys, double time_s);
 
 // The clip of that name (the first, where names repeat), else the one of that number from 0 on. The
 // error begins with place and lists the clips that there are.

@@ -56,13 +56,21 @@ ModelPose posed(std::size_t object, const Model& model, int clip, double clip_s,
   return evaluate_pose(model, clip, clip_s);
 }
 
+Mat4 model_from_joint(std::size_t object, const Model& model, int joint, int clip, double clip_s,
+                      double time_s, const SimulatedMotion* simulated) {
+  if (simulated)
+    if (const auto moved = simulated->model_from_node(object, model, joint, time_s)) return *moved;
+  return evaluate_node(model, joint, clip, clip_s);
+}
+
 Motion joint_motion(std::size_t object, const Carrier& carrier, int joint, double time_s,
                     const SimulatedMotion* simulated) {
   NERITIC_CHECK(carrier.model, "joint {} of object {} without a model", joint, object);
   return motion_by_differences(time_s, [&](double t_s) {
     const double clip_s = carrier.clip_offset_s + t_s * carrier.clip_rate;
-    return object_from_joint(posed(object, *carrier.model, carrier.clip, clip_s, t_s, simulated),
-                             joint, carrier.scale);
+    return object_from_joint(
+        model_from_joint(object, *carrier.model, joint, carrier.clip, clip_s, t_s, simulated),
+        carrier.scale);
   });
 }
 
@@ -104,11 +112,10 @@ const char* name_of(Knowledge known) {
   return "";
 }
 
-Pose object_from_joint(const ModelPose& pose, int node, const Vec3& scale) {
+Pose object_from_joint(const Mat4& model_from_node, const Vec3& scale) {
   constexpr double kNoLength = 1e-9;
-  const Mat4& m = pose.model_from_node[static_cast<std::size_t>(node)];
-  Pose out{scale * Vec3(m[3]), Quat(1.0, 0.0, 0.0, 0.0)};
-  Mat3 axes(m);
+  Pose out{scale * Vec3(model_from_node[3]), Quat(1.0, 0.0, 0.0, 0.0)};
+  Mat3 axes(model_from_node);
   for (int i = 0; i < 3; ++i) {
     const double length = glm::length(axes[i]);
     if (!(length > kNoLength)) return out;
@@ -164,7 +171,10 @@ Pose MotionSource::world_from_joint(std::size_t object, int joint, double time_s
   if (joint < 0) return world_from;
   const Object& of = scene_->objects[object];
   const Model& model = *scene_->models[static_cast<std::size_t>(of.model)];
-  return world_from * object_from_joint(model_pose(object, model, time_s), joint, of.scale);
+  const double clip_s = of.clip_offset_s + time_s * of.clip_rate;
+  return world_from *
+         object_from_joint(
+             model_from_joint(object, model, joint, of.clip, clip_s, time_s, simulated_), of.scale);
 }
 
 ModelPose MotionSource::model_pose(std::size_t object, const Model& model, double time_s) const {

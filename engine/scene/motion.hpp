@@ -39,12 +39,14 @@ class SimulatedMotion {
   // The pose of the object's model; nothing where its clip says it.
   virtual std::optional<ModelPose> model_pose(std::size_t object, const Model& model,
                                               double time_s) const = 0;
+  // Model_from_node of one node of that pose; nothing where the object's clip says it.
+  virtual std::optional<Mat4> model_from_node(std::size_t object, const Model& model, int node,
+                                              double time_s) const = 0;
 };
 
-// Object_from_joint: where a node of the object's model is in a pose of that model, without the
-// node's scale; scale: the object's. A part that is not worn has no axes of its own (its scale is
-// 0): it has the object's.
-Pose object_from_joint(const ModelPose& pose, int node, const Vec3& scale);
+// Object_from_joint: where a node of the object's model is, without the node's scale; scale: the
+// object's. A part that is not worn has no axes of its own (its scale is 0): it has the object's.
+Pose object_from_joint(const Mat4& model_from_node, const Vec3& scale);
 
 // A thing with what carries it, copied out of a scene that need not stay: where it is, as the
 // scene's MotionSource says it.

@@ -1,26 +1,39 @@
 // Nodes of a model that are moved by something other than a clip: the joints of a diver who swims
-// by physics. A plain value; any thread.
+// by physics. Plain values; any thread.
 #pragma once
 
+#include <cstddef>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/core/math.hpp"
 
 namespace neritic::scene {
 
-struct NodeMotion {
-  struct Key {
-    double time_s = 0.0;
-    std::vector<Quat> rotations;      // parent_from_node, one a node
-    std::vector<Vec3> scales;         // one a node
-    std::vector<Vec3> places_m = {};  // one a node, in its parent; empty: the model's own
-  };
-  std::vector<int> nodes;  // of the model
-  std::vector<Key>
-      keys;  // at least one, times rising; before the first and after the last it holds
+// Where some nodes of a model are at an instant.
+struct NodeKey {
+  double time_s = 0.0;
+  std::vector<Quat> rotations;      // parent_from_node, one a node
+  std::vector<Vec3> scales;         // one a node
+  std::vector<Vec3> places_m = {};  // one a node, in its parent; empty: the model's own
 };
 
-// Between two keys rotations turn the shortest way, scales and places change linearly.
-NodeMotion::Key key_at(const NodeMotion& motion, double time_s);
+// The keys before and after an instant; borrows all.
+struct NodeKeys {
+  std::span<const int> nodes;  // of the model, in the order of a key's
+  const NodeKey* before;
+  const NodeKey* after = nullptr;  // later than before; nullptr: before holds
+};
+
+// Parent_from_node.
+struct NodePlace {
+  Quat rotation;
+  Vec3 scale;
+  std::optional<Vec3> place_m = std::nullopt;  // nothing: the model's own
+};
+// Of keys.nodes[i]. Between two keys rotations turn the shortest way, scales and places change
+// linearly.
+NodePlace place_at(const NodeKeys& keys, std::size_t i, double time_s);
 
 }  // namespace neritic::scene

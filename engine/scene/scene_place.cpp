@@ -186,7 +186,7 @@ Pose world_from_carrier(const SceneDraft& draft,
     const Object& carrier = draft.objects[static_cast<std::size_t>(at->object)].object;
     if (at->joint >= 0) {
       const Model& model = *models[static_cast<std::size_t>(carrier.model)];
-      pose = object_from_joint(evaluate_pose(model, carrier.clip, carrier.clip_offset_s), at->joint,
+      pose = object_from_joint(evaluate_node(model, at->joint, carrier.clip, carrier.clip_offset_s),
                                carrier.scale) *
              pose;
     }

@@ -73,7 +73,7 @@ std::optional<scene::MotionAt> MotionHistory::at(std::size_t object, double time
       {predicted(from, kMostPredicted_s).pose}, scene::Knowledge::kHeld, since_s};
 }
 
-std::optional<scene::ModelPose> MotionHistory::model_pose(std::size_t object,
+std::optional<scene::NodeKeys> MotionHistory::keys_around(std::size_t object,
                                                           const scene::Model& model,
                                                           double time_s) const {
   const int place = index_in(joints_, object);
@@ -81,12 +81,27 @@ std::optional<scene::ModelPose> MotionHistory::model_pose(std::size_t object,
   if (place < 0 || count_ == 0 || model.nodes.empty()) return std::nullopt;
   const auto index = static_cast<std::size_t>(place);
   const std::size_t age = age_before(time_s);
-  if (at_age(age).joints[index].rotations.empty()) return std::nullopt;
-  scene::NodeMotion motion{moved_[static_cast<std::size_t>(place_[object])].nodes,
-                           {at_age(age).joints[index]}};
-  if (age > 0 && !at_age(age - 1).joints[index].rotations.empty())
-    motion.keys.push_back(at_age(age - 1).joints[index]);
-  return scene::evaluate_pose(model, motion, time_s);
+  const scene::NodeKey& before = at_age(age).joints[index];
+  if (before.rotations.empty()) return std::nullopt;
+  scene::NodeKeys keys{moved_[static_cast<std::size_t>(place_[object])].nodes, &before};
+  if (age > 0 && time_s >= before.time_s && !at_age(age - 1).joints[index].rotations.empty())
+    keys.after = &at_age(age - 1).joints[index];
+  return keys;
+}
+
+std::optional<scene::ModelPose> MotionHistory::model_pose(std::size_t object,
+                                                          const scene::Model& model,
+                                                          double time_s) const {
+  const auto keys = keys_around(object, model, time_s);
+  if (!keys) return std::nullopt;
+  return scene::evaluate_pose(model, *keys, time_s);
+}
+
+std::optional<Mat4> MotionHistory::model_from_node(std::size_t object, const scene::Model& model,
+                                                   int node, double time_s) const {
+  const auto keys = keys_around(object, model, time_s);
+  if (!keys) return std::nullopt;
+  return scene::evaluate_node(model, node, *keys, time_s);
 }
 
 std::vector<MotionHistory::Moved> moved_objects(const PhysicsWorld& world) {

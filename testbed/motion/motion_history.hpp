@@ -17,7 +17,7 @@ struct MotionSnapshot {
   // World_from_object; nothing: the object's own track or place has it.
   std::vector<std::optional<Motion>> motions;
   // For the objects with nodes, in their order; without rotations: its clip moves it.
-  std::vector<scene::NodeMotion::Key> joints;
+  std::vector<scene::NodeKey> joints;
 };
 
 class MotionHistory final : public scene::SimulatedMotion {
@@ -41,6 +41,8 @@ class MotionHistory final : public scene::SimulatedMotion {
   std::optional<scene::MotionAt> at(std::size_t object, double time_s) const override;
   std::optional<scene::ModelPose> model_pose(std::size_t object, const scene::Model& model,
                                              double time_s) const override;
+  std::optional<Mat4> model_from_node(std::size_t object, const scene::Model& model, int node,
+                                      double time_s) const override;
 
  private:
   // The newest has age 0.
@@ -48,6 +50,9 @@ class MotionHistory final : public scene::SimulatedMotion {
     return ring_[(added_ - 1 - age) % ring_.size()];
   }
   std::size_t age_before(double time_s) const;
+  // Of the nodes of an object's model; nothing while its clip moves it.
+  std::optional<scene::NodeKeys> keys_around(std::size_t object, const scene::Model& model,
+                                             double time_s) const;
 
   std::vector<Moved> moved_;
   // By object of the scene: its place in moved_, and in a snapshot's joints; -1: none.

@@ -117,10 +117,8 @@ void end_human(const PhysicsHuman& human, const sim::StaticWorld& solid, const H
 
 // The drawn diver: the pose of the model, and its nodes' rotations and scales (breath).
 Pose drawn_pose(const HumanPhysics& state);
-scene::NodeMotion::Key drawn_joints(const PhysicsHuman& human, const HumanPhysics& state,
-                                    double time_s);
+scene::NodeKey drawn_joints(const PhysicsHuman& human, const HumanPhysics& state, double time_s);
 // The same of one who swims elsewhere; without rotations while the model's clip moves it.
-scene::NodeMotion::Key drawn_joints(const DrawnJoints& drawn, const LimbState& state,
-                                    double time_s);
+scene::NodeKey drawn_joints(const DrawnJoints& drawn, const LimbState& state, double time_s);
 
 }  // namespace neritic::testbed

@@ -59,10 +59,9 @@ Pose drawn_pose(const HumanPhysics& state) {
   return diver::standing_pose(state.human.root.position_ned_m, state.human.root.attitude);
 }
 
-scene::NodeMotion::Key drawn_joints(const PhysicsHuman& human, const HumanPhysics& state,
-                                    double time_s) {
+scene::NodeKey drawn_joints(const PhysicsHuman& human, const HumanPhysics& state, double time_s) {
   const auto joints = diver::standing_joints(state.human.limbs.rotation, human.arms_spread_rad);
-  scene::NodeMotion::Key key{time_s, {Quat(1.0, 0.0, 0.0, 0.0)}, {}};
+  scene::NodeKey key{time_s, {Quat(1.0, 0.0, 0.0, 0.0)}, {}};
   for (const Quat& joint : joints) key.rotations.push_back(joint);
   key.scales.assign(diver::kSegments, Vec3(1.0));
   key.scales[diver::kPelvis] = Vec3(human.scale);
@@ -80,9 +79,8 @@ scene::NodeMotion::Key drawn_joints(const PhysicsHuman& human, const HumanPhysic
   return key;
 }
 
-scene::NodeMotion::Key drawn_joints(const DrawnJoints& drawn, const LimbState& state,
-                                    double time_s) {
-  scene::NodeMotion::Key key{time_s, {}, {}};
+scene::NodeKey drawn_joints(const DrawnJoints& drawn, const LimbState& state, double time_s) {
+  scene::NodeKey key{time_s, {}, {}};
   if (state.shown == 0) return key;
   key.rotations.push_back(Quat(1.0, 0.0, 0.0, 0.0));
   for (const Quat& joint : diver::standing_joints(state.joints, drawn.arms_spread_rad))

@@ -30,6 +30,10 @@ class StateMotion final : public scene::SimulatedMotion {
                                              double) const override {
     return std::nullopt;
   }
+  std::optional<Mat4> model_from_node(std::size_t, const scene::Model&, int,
+                                      double) const override {
+    return std::nullopt;
+  }
 
  private:
   const Movers& movers_;

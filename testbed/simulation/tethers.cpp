@@ -219,8 +219,8 @@ TetherReading tether_reading(const TetherState& state) {
           .touching = state.touching};
 }
 
-scene::NodeMotion::Key drawn_tether(std::span<const rov::CableNode> nodes, const TetherState& state,
-                                    double time_s) {
+scene::NodeKey drawn_tether(std::span<const rov::CableNode> nodes, const TetherState& state,
+                            double time_s) {
   const std::size_t segments = nodes.size() + 1;
   const auto place = [&](std::ptrdiff_t i) -> Vec3 {
     if (i <= 0) return Vec3(0.0);
@@ -229,7 +229,7 @@ scene::NodeMotion::Key drawn_tether(std::span<const rov::CableNode> nodes, const
                          : state.end_ned_m;
     return rov::world_from_ned(at - state.top_ned_m);
   };
-  scene::NodeMotion::Key key{time_s, {}, {}, {}};
+  scene::NodeKey key{time_s, {}, {}, {}};
   // Between two nodes a cubic through them, whose slope at each is its neighbours' (Catmull, Rom).
   for (std::size_t s = 0; s < segments; ++s)
     for (std::uint32_t k = 0; k < scene::kTetherJoints; ++k) {

@@ -73,7 +73,7 @@ class Tethers {
 
 TetherReading tether_reading(const TetherState& state);
 // The joints of the drawn tube, in the axes of the world about the top (scene::make_tube).
-scene::NodeMotion::Key drawn_tether(std::span<const rov::CableNode> nodes, const TetherState& state,
-                                    double time_s);
+scene::NodeKey drawn_tether(std::span<const rov::CableNode> nodes, const TetherState& state,
+                            double time_s);
 
 }  // namespace neritic::testbed

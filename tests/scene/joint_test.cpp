@@ -36,10 +36,26 @@ class LiftsTheArm final : public SimulatedMotion {
   std::optional<ModelPose> model_pose(std::size_t object, const Model& model,
                                       double time_s) const override {
     if (object != 0) return std::nullopt;
-    NodeMotion motion{{node_named(model, "upper_arm_r")},
-                      {{0.0, {glm::angleAxis(time_s, Vec3(1, 0, 0))}, {Vec3(1.0)}}}};
-    return evaluate_pose(model, motion, time_s);
+    return evaluate_pose(model, keys(), time_s);
   }
+  std::optional<Mat4> model_from_node(std::size_t object, const Model& model, int node,
+                                      double time_s) const override {
+    if (object != 0) return std::nullopt;
+    return evaluate_node(model, node, keys(), time_s);
+  }
+
+  explicit LiftsTheArm(const Model& model)
+      : nodes_{node_named(model, "upper_arm_r"), node_named(model, "lower_arm_r")} {
+    for (const double time_s : {0.0, 2.0})
+      ends_.push_back({time_s,
+                       {glm::angleAxis(time_s, Vec3(1, 0, 0)), glm::angleAxis(0.3, Vec3(0, 0, 1))},
+                       {Vec3(1.0), Vec3(1.0 + 0.1 * time_s)}});
+  }
+
+ private:
+  NodeKeys keys() const { return {nodes_, &ends_[0], &ends_[1]}; }
+  std::vector<int> nodes_;
+  std::vector<NodeKey> ends_;
 };
 
 TEST(Joint, WhatHangsOnItFollowsTheClip) {
@@ -88,7 +104,7 @@ TEST(Joint, ItsVelocityIsThatOfItsPlaces) {
 TEST(Joint, WhatHangsOnItFollowsASimulatedBody) {
   const test::ScratchFolder scratch;
   const Scene scene = scene_of(scratch, diver_with(kTorch));
-  const LiftsTheArm simulated;
+  const LiftsTheArm simulated(*scene.models[0]);
   const MotionSource source(scene, &simulated);
   const Model& model = *scene.models[0];
   const int hand = node_named(model, "hand_r");
@@ -105,11 +121,25 @@ TEST(Joint, WhatHangsOnItFollowsASimulatedBody) {
   expect_near(source.world_from_joint(0, -1, 0.0).position_m, {3, -4, 5});
 }
 
+TEST(Joint, OneNodeIsWhereTheWholePoseHasIt) {
+  const test::ScratchFolder scratch;
+  const Scene scene = scene_of(scratch, diver_with(kTorch));
+  const Model& model = *scene.models[0];
+  const LiftsTheArm simulated(model);
+  for (const double time_s : {-1.0, 0.0, 0.7, 1.9, 1e7})
+    for (std::size_t node = 0; node < model.nodes.size(); ++node) {
+      const int joint = static_cast<int>(node);
+      EXPECT_EQ(evaluate_node(model, joint, scene.objects[0].clip, time_s),
+                evaluate_pose(model, scene.objects[0].clip, time_s).model_from_node[node]);
+      EXPECT_EQ(*simulated.model_from_node(0, model, joint, time_s),
+                simulated.model_pose(0, model, time_s)->model_from_node[node]);
+    }
+}
+
 TEST(Joint, APartThatIsNotWornHasTheObjectsAxes) {
-  ModelPose pose;
-  pose.model_from_node = {Mat4(0.0)};
-  pose.model_from_node[0][3] = Vec4(1, 2, 3, 1);
-  const Pose out = object_from_joint(pose, 0, Vec3(2.0));
+  Mat4 model_from_node(0.0);
+  model_from_node[3] = Vec4(1, 2, 3, 1);
+  const Pose out = object_from_joint(model_from_node, Vec3(2.0));
   expect_near(out.position_m, {2, 4, 6});
   EXPECT_EQ(out.rotation, Quat(1, 0, 0, 0));
 }

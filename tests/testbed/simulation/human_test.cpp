@@ -114,8 +114,8 @@ TEST(HumanDive, WhatIsDrawnIsTheBodyOfThePhysics) {
   for (int i = 0; i < 30; ++i) {
     dive.run(0.21);
     const HumanPhysics& state = dive.state().humans()[0];
-    const scene::NodeMotion motion{human.nodes, {drawn_joints(human, state, 0.0)}};
-    const scene::ModelPose pose = scene::evaluate_pose(model, motion, 0.0);
+    const scene::NodeKey key = drawn_joints(human, state, 0.0);
+    const scene::ModelPose pose = scene::evaluate_pose(model, {human.nodes, &key}, 0.0);
     const Pose world_from_model = drawn_pose(state);
     const diver::Posture posture =
         diver::posture_of(human.body, state.human.limbs.rotation, state.human.limbs.rate);
@@ -154,7 +154,7 @@ TEST(HumanDive, IsDrawnAtItsHeightWithItsGear) {
     const PhysicsHuman& human = dive.world->humans()[0];
     const scene::Model& model =
         *dive.scene.models[static_cast<std::size_t>(dive.scene.objects[human.object].model)];
-    scene::NodeMotion::Key key = drawn_joints(human, human.start, 0.0);
+    scene::NodeKey key = drawn_joints(human, human.start, 0.0);
     for (Quat& turn : key.rotations) turn = Quat(1.0, 0.0, 0.0, 0.0);  // as it was built
     const scene::ModelPose pose = scene::evaluate_pose(model, {human.nodes, {key}}, 0.0);
     // Head to foot, which no gear lengthens.

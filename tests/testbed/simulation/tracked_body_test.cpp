@@ -19,8 +19,8 @@ Drawn drawn_diver(const TestDive& dive) {
   const HumanPhysics& state = dive.state().humans()[0];
   const scene::Model& model =
       *dive.scene.models[static_cast<std::size_t>(dive.scene.objects[human.object].model)];
-  const scene::NodeMotion motion{human.nodes, {drawn_joints(human, state, 0.0)}};
-  const scene::ModelPose pose = scene::evaluate_pose(model, motion, 0.0);
+  const scene::NodeKey key = drawn_joints(human, state, 0.0);
+  const scene::ModelPose pose = scene::evaluate_pose(model, {human.nodes, &key}, 0.0);
   const Mat4 world = to_matrix(drawn_pose(state));
   const auto node = [&](diver::Segment segment) {
     return world * pose.model_from_node[static_cast<std::size_t>(human.nodes[segment])];
