@@ -1,8 +1,10 @@
 #include "testbed/samples/sample.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <concepts>
+#include <span>
 #include <utility>
 
 #include "engine/sim/fields.hpp"
@@ -61,6 +63,26 @@ bool plausible_in(const ObjectPose& object) {
   return plausible_in(object.world_from_object) &&
          (object.measured == 0 || (within(object.velocity_m_s, kFastest) &&
                                    within(object.angular_velocity_rad_s, kFastest)));
+}
+
+bool plausible_in(const VehicleSetpoint& setpoint) {
+  return within(setpoint.position_m, kFarthest_m) && within(setpoint.velocity_m_s, kFastest);
+}
+
+bool plausible_in(const VehicleVelocity& wanted) {
+  return within(wanted.velocity_m_s, kFastest) && std::abs(wanted.yaw_rate_rad_s) <= kFastest;
+}
+
+bool strong_at_most(std::span<const double> values) {
+  return std::ranges::all_of(values, [](double v) { return std::abs(v) <= kStrongest; });
+}
+
+bool plausible_in(const VehicleWrench& wanted) {
+  return strong_at_most(wanted.wrench.v);
+}
+
+bool plausible_in(const VehicleThrusters& wanted) {
+  return strong_at_most(wanted.force_n);
 }
 
 }  // namespace

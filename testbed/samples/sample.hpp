@@ -104,10 +104,12 @@ static_assert(std::is_trivially_copyable_v<Sample>);
 Payload empty_payload(PayloadKind kind);
 // Every number is finite.
 bool all_finite(const Payload& payload);
-// Nearer than kFarthest_m, slower than kFastest (m/s or rad/s), and every rotation is a unit
-// quaternion up to the rounding of 32-bit floats. Precondition: all_finite.
+// Nearer than kFarthest_m, slower than kFastest (m/s or rad/s), asking for no more than kStrongest
+// (N or N m), and every rotation is a unit quaternion up to the rounding of 32-bit floats.
+// Precondition: all_finite.
 bool plausible(const Payload& payload);
 inline constexpr double kFarthest_m = 4e7;  // the Earth's circumference
 inline constexpr double kFastest = 1e4;
+inline constexpr double kStrongest = 1e6;
 
 }  // namespace neritic::testbed

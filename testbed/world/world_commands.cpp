@@ -24,7 +24,7 @@ Status check_count(const std::string& where, std::size_t found, std::size_t leas
 }
 
 // Beyond these no vehicle is and no thruster pushes: a wrong unit, or a number that was never set.
-constexpr double kMost_m = 1e6, kMost_m_s = 100.0, kMost_n = 1e6;
+constexpr double kMost_m_s = 100.0;
 
 Status check_most(const std::string& where, std::span<const double> values, double most,
                   const char* unit) {
@@ -47,7 +47,7 @@ Result<Said> vehicle_command(const PhysicsVehicle& vehicle, const std::string& w
   const std::size_t thrusters = vehicle.vehicle.thruster_count;
   if (kind == "goto") {
     NERITIC_TRY_STATUS(check_count(where, values.size() == 7 ? 4 : values.size(), 4, 4));
-    NERITIC_TRY_STATUS(check_most(where, std::span(values).first(3), kMost_m, "m"));
+    NERITIC_TRY_STATUS(check_most(where, std::span(values).first(3), kFarthest_m, "m"));
     NERITIC_TRY_STATUS(check_most(where, std::span(values).subspan(4), kMost_m_s, "m/s"));
     const double yaw = values[3];
     values.erase(values.begin() + 3);
@@ -63,7 +63,7 @@ Result<Said> vehicle_command(const PhysicsVehicle& vehicle, const std::string& w
   }
   if (kind == "wrench") {
     NERITIC_TRY_STATUS(check_count(where, values.size(), 6, 6));
-    NERITIC_TRY_STATUS(check_most(where, values, kMost_n, "N or N m"));
+    NERITIC_TRY_STATUS(check_most(where, values, kStrongest, "N or N m"));
     return Said{PayloadKind::kWrench, values};
   }
   NERITIC_TRY_STATUS(check_count(where, values.size(), thrusters, thrusters));
@@ -74,7 +74,7 @@ Result<Said> vehicle_command(const PhysicsVehicle& vehicle, const std::string& w
     for (double& value : values)
       value = vehicle.file.curve->thrust_n(value, vehicle.file.voltage_v);
   }
-  if (kind == "thrusters") NERITIC_TRY_STATUS(check_most(where, values, kMost_n, "N"));
+  if (kind == "thrusters") NERITIC_TRY_STATUS(check_most(where, values, kStrongest, "N"));
   values.resize(rov::kMaxThrusters, 0.0);
   return Said{kind == "faults" ? PayloadKind::kFault : PayloadKind::kThrusters, values};
 }

@@ -68,6 +68,22 @@ TEST(SampleInbox, EveryWrongSampleIsRefusedAndCountedByItsSource) {
   hands.tracked = 2;
   EXPECT_EQ(inbox.push(sample_of(table, "diver/hand_poses", suit, 1, hands)), kNotPlausible);
 
+  VehicleVelocity fast;
+  fast.velocity_m_s.x = 1e30;
+  VehicleSetpoint far;
+  far.position_m.z = -1e12;
+  VehicleWrench strong;
+  strong.wrench[2] = 1e300;
+  VehicleThrusters forces;
+  forces.force_n[3] = -1e9;
+  const auto push = [&](const char* stream, const Payload& payload) {
+    return inbox.push(sample_of(table, stream, other, 0, payload));
+  };
+  EXPECT_EQ(push("rov/velocity", fast), kNotPlausible);
+  EXPECT_EQ(push("rov/setpoint", far), kNotPlausible);
+  EXPECT_EQ(push("rov/wrench", strong), kNotPlausible);
+  EXPECT_EQ(push("rov/thrusters", forces), kNotPlausible);
+
   const SourceCounts counts = inbox.counts(suit);
   EXPECT_EQ(counts.accepted, 3u);
   EXPECT_EQ(counts.lost, 2u);  // 6 and 8
@@ -79,7 +95,7 @@ TEST(SampleInbox, EveryWrongSampleIsRefusedAndCountedByItsSource) {
   EXPECT_EQ(counts.not_of_stream, 2u);
   EXPECT_EQ(counts.refused(), 10u);
   EXPECT_EQ(inbox.unknown_sources(), 1u);
-  EXPECT_EQ(inbox.counts(other).refused(), 0u);
+  EXPECT_EQ(inbox.counts(other).refused(), 4u);
   EXPECT_EQ(inbox.drain().size(), 3u);  // none of the wrong ones
 }
 
