@@ -27,6 +27,7 @@ TOOLS = os.path.join(HERE, "..", "..", "tools", "experiment")
 sys.path.insert(0, TOOLS)
 
 import detector
+import imaging
 import intervals
 import report
 import rotations
@@ -68,6 +69,24 @@ class Sonar(unittest.TestCase):
         place = [float(x) for x in re.search(r"position_m = \[(.*)\]", shark_senses.SONAR)[1].split(",")]
         self.assertIn("size_m = [0.457, 0.254, 0.575]", open(shark_scene.__file__).read())
         self.assertLess(place[2], -0.575 / 2)
+
+
+class Imaging(unittest.TestCase):
+    @staticmethod
+    def plate(left, right, low, high):
+        """Two triangles 3 m ahead: a wall between these metres to starboard and up."""
+        a, b, c, d = (np.array([x, y, -3.0]) for x, y in ((left, low), (right, low), (right, high), (left, high)))
+        return np.array([[a, b, c], [a, c, d]])
+
+    def test_what_the_aperture_cuts_off_moves_the_middle(self):
+        tilt = math.radians(8)
+        # Within 14 degrees of elevation at either tilt.
+        self.assertAlmostEqual(imaging.cut_bins(self.plate(-0.3, 0.5, -0.1, 0.1), tilt), 0.0, places=6)
+        # A low plate of 0.4 m to port and a high one of 0.4 m to starboard, which leaves the aperture when it is lifted: the middle
+        # goes from 0 to the port one's, 0.2 / 3 rad or 3.81 degrees away, 21 of the 500 bins of 90 degrees.
+        both = np.concatenate([self.plate(-0.4, 0.0, -0.2, 0.0), self.plate(0.0, 0.4, 0.45, 0.65)])
+        self.assertAlmostEqual(imaging.cut_bins(both, tilt), -21.2, delta=1.0)
+        self.assertAlmostEqual(imaging.cut_bins(both, -tilt), 0.0, places=6)
 
 
 class Pages(unittest.TestCase):

@@ -35,7 +35,7 @@ MEASURES = {
     "mask_iou": ("", "overlap over union of the diver's bins with the ray caster's"),
     "columns_within_2_bins": ("", "share of the columns that both see whose nearest range agrees within 2 bins"),
     "ambiguity_range_bins": ("bins", "largest change of the diver's nearest range when it is tilted up or down, but for what the edge of the aperture cuts off"),
-    "ambiguity_bearing_bins": ("bins", "largest change of its bearing, the middle of its echo's energy"),
+    "ambiguity_bearing_bins": ("bins", "largest change of its bearing, the middle of its echo's energy, but for what the aperture cuts off"),
     "early_energy": ("", "share of the diver's energy that is heard more than 2 bins before its surface"),
     "overlap_up_down": ("", "overlap over union of the masks of the diver up and down: 1 cannot be told apart"),
 }
@@ -88,6 +88,30 @@ def _nearest_m(triangles):
     corners = triangles.reshape(-1, 3)
     within = np.abs(np.arctan2(corners[:, 1], np.hypot(corners[:, 0], corners[:, 2]))) <= math.radians(ELEVATION_DEG / 2)
     return np.linalg.norm(corners[within], axis=1).min(initial=RANGE_M[1])
+
+
+def cut_bins(triangles, tilt_rad):
+    """How far the edge of the aperture moves the middle of a tilted diver's echo: what it cuts off of the tilted diver, less what it
+    cuts off of the level one. From the rays of an aperture that holds both; a turn about the sonar hides nothing anew."""
+    high_deg = ELEVATION_DEG + 2 * abs(math.degrees(tilt_rad)) + 2
+    rows = math.ceil(BINS * high_deg / ELEVATION_DEG)
+    ranges, cosines = ray_caster.nearest_hits(triangles, AZIMUTH_DEG, high_deg, BINS, rows)
+    row, column = np.nonzero((ranges >= RANGE_M[0]) & (ranges < RANGE_M[1]))
+    azimuth = np.radians(((column + 0.5) / BINS - 0.5) * AZIMUTH_DEG)
+    elevation = np.radians(((row + 0.5) / rows - 0.5) * high_deg)
+    rays = np.stack([np.cos(elevation) * np.sin(azimuth), np.sin(elevation), -np.cos(elevation) * np.cos(azimuth)], axis=1)
+
+    def moved(turn):
+        x, y, z = turn @ rays.T
+        # A sonar's cells are even in elevation: a patch of the sphere has more of them towards the poles.
+        weight = cosines[row, column] * np.cos(elevation) / np.sqrt(1 - y * y)
+        at = (np.degrees(np.arctan2(x, -z)) / AZIMUTH_DEG + 0.5) * BINS
+        within = np.abs(y) <= math.sin(math.radians(ELEVATION_DEG / 2))
+        if not within.any():
+            return 0.0
+        return np.average(at[within], weights=weight[within]) - np.average(at, weights=weight)
+
+    return moved(_tilt(triangles, tilt_rad)) - moved(np.eye(3)) if len(row) else 0.0
 
 
 def _sonar(settings):
@@ -160,10 +184,11 @@ def run(settings, seed, tools):
     moved_range, moved_bearing = [], []
     for name in ("up", "down"):
         other = _near(masks[name])
-        tilt = _tilt(level[2], PLACES[name][1] * math.radians(settings["tilt_deg"]))
+        tilt_rad = PLACES[name][1] * math.radians(settings["tilt_deg"])
+        tilt = _tilt(level[2], tilt_rad)
         cut = (_nearest_m(level[2] @ tilt.T) - _nearest_m(level[2])) / (RANGE_M[1] - RANGE_M[0]) * BINS
         moved_range.append(abs(other[other >= 0].min(initial=BINS) - near[near >= 0].min(initial=BINS) - cut))
-        moved_bearing.append(abs(bearing[name] - bearing["level"]))
+        moved_bearing.append(abs(bearing[name] - bearing["level"] - cut_bins(level[2], tilt_rad)))
     measures = {
         "sphere_bin": sphere_bin, "sphere_bin_error": sphere_bin - math.floor(exact),
         "mask_iou": _iou(masks["level"], truth),
