@@ -45,7 +45,7 @@ class LiftsTheArm final : public SimulatedMotion {
   }
 
   explicit LiftsTheArm(const Model& model)
-      : nodes_{node_named(model, "upper_arm_r"), node_named(model, "lower_arm_r")} {
+      : nodes_{node_named(model, "upper_arm_r"), node_named(model, "forearm_r")} {
     for (const double time_s : {0.0, 2.0})
       ends_.push_back({time_s,
                        {glm::angleAxis(time_s, Vec3(1, 0, 0)), glm::angleAxis(0.3, Vec3(0, 0, 1))},
