@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/random.hpp"
+#include "engine/render/bubble_field.hpp"
 #include "engine/render/skylight.hpp"
 #include "engine/render/snow_field.hpp"
 #include "shared/bubble.h"
@@ -70,9 +71,10 @@ bool has_particles(const scene::Scene& scene) {
          (scene.water->snow || !scene.water->bubbles.empty() || !scene.water->silt.empty());
 }
 
-ViewParticles view_particles(const scene::MotionSource& motion, SnowField& field,
-                             std::uint64_t seed, const ViewSet& views, double time_s,
-                             double snow_share, double spot_px, const SkylightGrid* skylight) {
+ViewParticles view_particles(const scene::MotionSource& motion, SnowField& snow,
+                             BubbleField& bubbles, std::uint64_t seed, const ViewSet& views,
+                             double time_s, double snow_share, double spot_px,
+                             const SkylightGrid* skylight) {
   ViewParticles out;
   // The phase of bubbles' wobble now, in 256ths of a turn.
   const double swings = time_s * shared::kWobble_hz;
@@ -85,15 +87,15 @@ ViewParticles view_particles(const scene::MotionSource& motion, SnowField& field
   std::vector<Drawn> drawn;
   if (water.snow) {
     std::vector<SnowField::Run> cells;
-    field.place(*water.snow, seed, sight, time_s, snow_share, dim ? pixels_at_a_metre(views) : 0.0,
-                placed, cells);
+    snow.place(*water.snow, seed, sight, time_s, snow_share, dim ? pixels_at_a_metre(views) : 0.0,
+               placed, cells);
     for (const SnowField::Run& cell : cells)
       drawn.push_back({false, cell.distance2_m2, cell.first, cell.count});
     out.shutter_s = water.snow->shutter_s;
   }
   std::vector<WorldParticle> others;
   for (std::size_t i = 0; i < water.bubbles.size(); ++i)
-    add_bubbles(motion, water.bubbles[i], i, seed, time_s, others, &sight);
+    bubbles.append(motion, water.bubbles[i], i, seed, time_s, others, &sight);
   for (std::size_t i = 0; i < water.silt.size(); ++i)
     add_silt(motion, water.silt[i], i, seed, time_s, others);
   for (const WorldParticle& particle : others) {

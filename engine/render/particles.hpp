@@ -11,6 +11,7 @@
 
 namespace neritic::render {
 
+class BubbleField;
 class SnowField;
 struct SkylightGrid;
 
@@ -31,11 +32,7 @@ std::vector<WorldParticle> snow_around(const scene::Snow& snow, std::uint64_t se
 
 // Speed at which a bubble rises in still water.
 double bubble_speed_m_s(double radius_m);
-// A source's bubbles, and its silt, at a time; number: of the source, for its randomness; sight:
-// only bubbles that may lie in it.
-void add_bubbles(const scene::MotionSource& motion, const scene::BubbleSource& source,
-                 std::uint64_t number, std::uint64_t seed, double time_s,
-                 std::vector<WorldParticle>& out, const SphereCulling* sight = nullptr);
+// A source's silt at a time; number: of the source, for its randomness. Bubbles: bubble_field.hpp.
 void add_silt(const scene::MotionSource& motion, const scene::SiltSource& source,
               std::uint64_t number, std::uint64_t seed, double time_s,
               std::vector<WorldParticle>& out);
@@ -48,12 +45,12 @@ struct ViewParticles {
   double shutter_s = 0.0;
 };
 bool has_particles(const scene::Scene& scene);
-// field: the snow's cells, kept from call to call. spot_px: those of a smaller radius in the
+// snow, bubbles: what they keep from call to call. spot_px: those of a smaller radius in the
 // picture are drawn in part (at least a quarter of them), each as much more opaque; 0: all are
 // drawn. skylight: dims those that it leaves in the dark; nullptr: none.
-ViewParticles view_particles(const scene::MotionSource& motion, SnowField& field,
-                             std::uint64_t seed, const ViewSet& views, double time_s,
-                             double snow_share = 1.0, double spot_px = 0.0,
+ViewParticles view_particles(const scene::MotionSource& motion, SnowField& snow,
+                             BubbleField& bubbles, std::uint64_t seed, const ViewSet& views,
+                             double time_s, double snow_share = 1.0, double spot_px = 0.0,
                              const SkylightGrid* skylight = nullptr);
 
 }  // namespace neritic::render

@@ -177,6 +177,13 @@ Pose MotionSource::world_from_joint(std::size_t object, int joint, double time_s
              model_from_joint(object, model, joint, of.clip, clip_s, time_s, simulated_), of.scale);
 }
 
+FollowedPlace MotionSource::place_of(std::size_t object, int joint, const Vec3& position_m,
+                                     double time_s) const {
+  if (simulated_)
+    if (const auto place = simulated_->followed(object, joint, position_m, time_s)) return *place;
+  return {world_from_joint(object, joint, time_s) * position_m};
+}
+
 ModelPose MotionSource::model_pose(std::size_t object, const Model& model, double time_s) const {
   const Object& of = scene_->objects[object];
   return posed(object, model, of.clip, of.clip_offset_s + time_s * of.clip_rate, time_s,

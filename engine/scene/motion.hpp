@@ -30,6 +30,12 @@ struct MotionAt {
   double predicted_s = 0.0;  // how far behind that time the newest state is
 };
 
+// A point that a simulation follows, where it was long ago.
+struct FollowedPlace {
+  Vec3 position_m{0.0};   // world
+  double wash_m_s = 0.0;  // how fast thrusters drove the water over the bed below it
+};
+
 // Objects that something else than their track and clip moves: a simulation.
 class SimulatedMotion {
  public:
@@ -42,6 +48,11 @@ class SimulatedMotion {
   // Model_from_node of one node of that pose; nothing where the object's clip says it.
   virtual std::optional<Mat4> model_from_node(std::size_t object, const Model& model, int node,
                                               double time_s) const = 0;
+  // Where a point of an object, or of a joint of its model, was long ago. Nothing where the
+  // simulation does not follow that point, or time_s is not long ago: the poses then say it.
+  virtual std::optional<FollowedPlace> followed(std::size_t, int, const Vec3&, double) const {
+    return std::nullopt;
+  }
 };
 
 // Object_from_joint: where a node of the object's model is, without the node's scale; scale: the
@@ -80,6 +91,9 @@ class MotionSource {
   Pose world_from_object(std::size_t object, double time_s) const;
   // Of a node of the object's model; joint -1: of the object.
   Pose world_from_joint(std::size_t object, int joint, double time_s) const;
+  // A point of a joint's frame, or of the object's; also long ago, if the simulation follows it.
+  FollowedPlace place_of(std::size_t object, int joint, const Vec3& position_m,
+                         double time_s) const;
   ModelPose model_pose(std::size_t object, const Model& model, double time_s) const;
 
  private:

@@ -20,10 +20,10 @@ LivePhysics::LivePhysics(std::unique_ptr<const PhysicsWorld> world, const Option
       pace_(options.pace),
       clock_(options.clock ? options.clock : &host_),
       simulation_(simulation_of(*world_, options)),
-      history_(moved_objects(*world_)),
+      history_(moved_objects(*world_), world_->followed()),
       start_step_(simulation_->newest().step),
       shown_s_(simulation_->newest().time_s) {
-  history_.add(motion_of(*world_, simulation_->newest()));
+  begin_history();
   if (pace_ == Pace::kClock) reader_ = simulation_->reader();
 }
 
@@ -75,8 +75,7 @@ Status LivePhysics::go_to(const SavedState& saved) {
                        id, saved.sources[id], known[id]);
   between_steps([&](PhysicsSimulation& simulation) {
     restore_state(simulation, saved);
-    history_.clear();
-    history_.add(motion_of(*world_, simulation.newest()));
+    begin_history();
     start_step_ = simulation.newest().step;
     shown_s_ = simulation.newest().time_s;
     if (simulation.observer()) simulation.observer()(simulation.newest());
@@ -93,8 +92,22 @@ bool LivePhysics::poll(double time_s) {
   return listening_.ok();
 }
 
+void LivePhysics::begin_history() {
+  history_.clear();
+  history_.add(motion_of(*world_, simulation_->newest()));
+  trace(simulation_->newest());
+}
+
+void LivePhysics::trace(const sim::Snapshot<PhysicsState>& snapshot) {
+  if (history_.trace_due(snapshot.time_s))
+    history_.trace(motion_of(*world_, snapshot),
+                   [&](const Vec3& place_m) { return world_->wash_m_s(snapshot.state, place_m); });
+}
+
 void LivePhysics::advance() {
-  if (poll(simulation_->newest().time_s)) simulation_->advance(1);
+  if (!poll(simulation_->newest().time_s)) return;
+  simulation_->advance(1);
+  trace(simulation_->newest());
 }
 
 void LivePhysics::reach(double time_s, const Stop& stop) {
@@ -145,6 +158,7 @@ double LivePhysics::follow_thread(TimeNs display_ns) {
   if (newest.step == start_step_) return shown_s_;
   history_.add(motion_of(*world_, reader_->previous()));
   history_.add(motion_of(*world_, newest));
+  trace(newest);
   return newest.time_s + 1e-9 * static_cast<double>(display_ns - newest.due_ns);
 }
 

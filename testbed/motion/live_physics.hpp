@@ -75,7 +75,7 @@ class LivePhysics {
   // Lock-step: steps until the state of time_s is known, and keeps the states of a short while
   // before it; what was kept for the last such time stays.
   void reach(double time_s, const Stop& stop = {});
-  // Lock-step: one step. Nothing is kept: the history does not follow.
+  // Lock-step: one step. Of the history only its followed points go on.
   void advance();
   // Lock-step at the host's pace: from the next step on, when the scene's time was time_s.
   void keep_pace(double time_s, TimeNs host_ns) {
@@ -103,6 +103,8 @@ class LivePhysics {
   double follow_thread(TimeNs display_ns);
   void await_step();
   bool poll(double time_s);
+  void begin_history();
+  void trace(const sim::Snapshot<PhysicsState>& snapshot);
 
   std::unique_ptr<const PhysicsWorld> world_;
   Pace pace_;

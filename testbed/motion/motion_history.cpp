@@ -15,7 +15,43 @@ int index_in(const std::vector<int>& table, std::size_t object) {
 
 }  // namespace
 
-MotionHistory::MotionHistory(std::vector<Moved> moved) : moved_(std::move(moved)), ring_(kKept) {
+// One snapshot alone, at its time.
+class MotionHistory::Instant final : public scene::SimulatedMotion {
+ public:
+  Instant(const MotionHistory& of, const MotionSnapshot& snapshot) : of_(of), snapshot_(snapshot) {}
+  std::optional<scene::MotionAt> at(std::size_t object, double) const override {
+    const int place = index_in(of_.place_, object);
+    if (place < 0 || !snapshot_.motions[static_cast<std::size_t>(place)]) return std::nullopt;
+    return scene::MotionAt{*snapshot_.motions[static_cast<std::size_t>(place)]};
+  }
+  std::optional<scene::ModelPose> model_pose(std::size_t object, const scene::Model& model,
+                                             double time_s) const override {
+    const auto keys = keys_of(object);
+    if (!keys) return std::nullopt;
+    return scene::evaluate_pose(model, *keys, time_s);
+  }
+  std::optional<Mat4> model_from_node(std::size_t object, const scene::Model& model, int node,
+                                      double time_s) const override {
+    const auto keys = keys_of(object);
+    if (!keys) return std::nullopt;
+    return scene::evaluate_node(model, node, *keys, time_s);
+  }
+
+ private:
+  std::optional<scene::NodeKeys> keys_of(std::size_t object) const {
+    const int joints = index_in(of_.joints_, object);
+    if (joints < 0) return std::nullopt;
+    const scene::NodeKey& key = snapshot_.joints[static_cast<std::size_t>(joints)];
+    if (key.rotations.empty()) return std::nullopt;
+    return scene::NodeKeys{of_.moved_[static_cast<std::size_t>(of_.place_[object])].nodes, &key};
+  }
+
+  const MotionHistory& of_;
+  const MotionSnapshot& snapshot_;
+};
+
+MotionHistory::MotionHistory(std::vector<Moved> moved, std::vector<FollowedPoint> followed)
+    : moved_(std::move(moved)), ring_(kKept), trails_(std::move(followed)) {
   int joints = 0;
   for (std::size_t i = 0; i < moved_.size(); ++i) {
     const std::size_t object = moved_[i].object;
@@ -34,6 +70,15 @@ void MotionHistory::add(MotionSnapshot snapshot) {
   if (count_ > 0 && snapshot.time_s <= newest_s()) return;
   ring_[added_++ % ring_.size()] = std::move(snapshot);
   count_ = std::min(count_ + 1, ring_.size());
+}
+
+void MotionHistory::trace(const MotionSnapshot& snapshot, const Trails::Wash& wash) {
+  trails_.add(Instant(*this, snapshot), snapshot.time_s, wash);
+}
+
+void MotionHistory::clear() {
+  added_ = count_ = 0;
+  trails_.clear();
 }
 
 // The age of the newest snapshot that is not later than time_s; the oldest where all are later.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/scene/motion.hpp"
+#include "testbed/motion/trails.hpp"
 #include "testbed/simulation/physics_world.hpp"
 
 namespace neritic::testbed {
@@ -30,11 +31,15 @@ class MotionHistory final : public scene::SimulatedMotion {
   static constexpr std::size_t kKept = 64;
   static constexpr double kMostPredicted_s = 0.1;
 
-  explicit MotionHistory(std::vector<Moved> moved);
+  explicit MotionHistory(std::vector<Moved> moved, std::vector<FollowedPoint> followed = {});
 
   // Times rise; one that is not later than the newest is left out. The oldest makes room.
   void add(MotionSnapshot snapshot);
-  void clear() { added_ = count_ = 0; }
+  // Whether trace() wants the state of that time; its times rise, too.
+  bool trace_due(double time_s) const { return trails_.due(time_s); }
+  // Notes where the followed points are, and keeps nothing else.
+  void trace(const MotionSnapshot& snapshot, const Trails::Wash& wash);
+  void clear();
   bool empty() const { return count_ == 0; }
   double newest_s() const { return at_age(0).time_s; }
 
@@ -43,8 +48,14 @@ class MotionHistory final : public scene::SimulatedMotion {
                                              double time_s) const override;
   std::optional<Mat4> model_from_node(std::size_t object, const scene::Model& model, int node,
                                       double time_s) const override;
+  std::optional<scene::FollowedPlace> followed(std::size_t object, int joint,
+                                               const Vec3& position_m,
+                                               double time_s) const override {
+    return trails_.at(object, joint, position_m, time_s);
+  }
 
  private:
+  class Instant;
   // The newest has age 0.
   const MotionSnapshot& at_age(std::size_t age) const {
     return ring_[(added_ - 1 - age) % ring_.size()];
@@ -59,6 +70,7 @@ class MotionHistory final : public scene::SimulatedMotion {
   std::vector<int> place_, joints_;
   std::vector<MotionSnapshot> ring_;
   std::size_t added_ = 0, count_ = 0;
+  Trails trails_;
 };
 
 // The parts of a physics' states that the history keeps: vehicles, then divers, then objects that

@@ -54,6 +54,7 @@ Result<std::unique_ptr<Session>> Session::create(gpu::Device& device, scene::Sce
   session->sun_maps_ = std::make_unique<SunMaps>();
   session->skylight_ = std::make_unique<Skylight>();
   session->snow_ = std::make_unique<render::SnowField>();
+  session->bubbles_ = std::make_unique<render::BubbleField>();
   session->moving_ = render::moving_objects(session->scene_);
   for (const std::uint8_t moves : session->moving_) session->still_.push_back(moves ? 0 : 1);
   session->echo_tables_ = std::make_unique<EchoTables>(std::move(tables));
@@ -160,7 +161,7 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
       graph,         device_,          *renderer_, scene_,    *gpu_scene_,
       motion,        work.state,       deformed,   readback_, request.seed.value_or(scene_.seed),
       work.light,    *sun_maps_,       *skylight_, moving_,   still_,
-      request.frame, work.deform_need, *snow_};
+      request.frame, work.deform_need, *snow_,     *bubbles_};
   const auto add = [&](const std::string& label, const ViewsRequest& set, std::size_t index,
                        auto& works, std::vector<SensorFrame::Views>& out) -> Status {
     works.push_back(std::make_unique<FrameWork::Picture>());

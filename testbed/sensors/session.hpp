@@ -14,6 +14,7 @@
 #include "engine/gpu/device.hpp"
 #include "engine/gpu/frames.hpp"
 #include "engine/graph/frame_graph.hpp"
+#include "engine/render/bubble_field.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/render/snow_field.hpp"
 #include "testbed/sensors/frame_request.hpp"
@@ -82,6 +83,7 @@ class Session {
   std::unique_ptr<SunMaps> sun_maps_;
   std::unique_ptr<Skylight> skylight_;
   std::unique_ptr<render::SnowField> snow_;
+  std::unique_ptr<render::BubbleField> bubbles_;
   std::vector<std::uint8_t> moving_, still_;  // flags by object
   std::vector<double> lamp_cd_;  // of lamps at their full intensity, once one was dimmed
   std::string plan_text_, plan_graphviz_;

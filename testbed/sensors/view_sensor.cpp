@@ -261,9 +261,9 @@ Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::str
     if (lighting.terms & shared::kLightSkylight) {
       NERITIC_TRY(skylight, frame.skylight.grid(frame));
     }
-    work.particles = render::view_particles(frame.motion, frame.snow, frame.scene.seed, views,
-                                            frame.state.time_s, detail.particles,
-                                            request.thrift.spot_px, skylight);
+    work.particles = render::view_particles(frame.motion, frame.snow, frame.bubbles,
+                                            frame.scene.seed, views, frame.state.time_s,
+                                            detail.particles, request.thrift.spot_px, skylight);
   }
   NERITIC_TRY(graph::ImageHandle hdr,
               request.camera && request.camera->terms.spectrum

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/render/bubble_field.hpp"
 #include "engine/render/caustic_waves.hpp"
 #include "engine/render/particles.hpp"
 #include "engine/render/renderer.hpp"
@@ -61,6 +62,7 @@ struct FrameParts {
   // Vertices of each FrameState::deforms that some view draws (DrawListOptions).
   std::vector<std::uint32_t>& deform_need;
   render::SnowField& snow;
+  render::BubbleField& bubbles;
 };
 
 // A view set in one frame: data that the passes borrow, and the buffers that the host reads.

@@ -96,6 +96,7 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
   world->water_kg_m3_ = scene.physics->water_kg_m3;
   if (scene.water && scene.water->column) world->layers_.emplace(*scene.water->column);
   NERITIC_TRY(world->modems_, Modems::create(scene, world->movers_));
+  world->followed_ = followed_points(scene, world->movers_);
   for (const PhysicsModem& modem : world->modems_.all())
     if (modem.sort == OwnerSort::kVehicle && modem.ranging &&
         world->vehicles_[modem.owner].file.sensors.usbl)
@@ -303,6 +304,11 @@ std::unique_ptr<PhysicsSimulation> PhysicsWorld::simulation(sim::SimulationOptio
       [this](PhysicsInputs& inputs, const Sample& sample, std::uint64_t step) {
         apply(inputs, sample, step);
       });
+}
+
+double PhysicsWorld::wash_m_s(const PhysicsState& state, const Vec3& place_m) const {
+  if (!washes_) return 0.0;
+  return glm::length(wash_ned_m_s(vehicles_, state, rov::ned_from_world(place_m), water_kg_m3_));
 }
 
 }  // namespace neritic::testbed

@@ -14,6 +14,7 @@
 #include "rov/navigation.hpp"
 #include "testbed/simulation/body_step.hpp"
 #include "testbed/simulation/diver_condition.hpp"
+#include "testbed/simulation/followed_points.hpp"
 #include "testbed/simulation/human_world.hpp"
 #include "testbed/simulation/mission.hpp"
 #include "testbed/simulation/modems.hpp"
@@ -108,6 +109,8 @@ class PhysicsWorld {
   const Modems& modems() const { return modems_; }
   const Things& things() const { return things_; }
   const Tethers& tethers() const { return tethers_; }
+  // For the history of motion; the step does not need them.
+  const std::vector<FollowedPoint>& followed() const { return followed_; }
   const sim::StaticWorld& solid() const { return solid_; }
   // The object of a label of solid(), and whether it is of class seabed.
   std::string solid_name(std::uint32_t label) const;
@@ -137,6 +140,8 @@ class PhysicsWorld {
   Vec3 current_ned_m_s(const Vec3& position_ned_m, double time_s) const;
   // The water's velocity, with waves that move bodies, and its head; no accelerations.
   diver::WaterFlow water_ned(const Vec3& position_ned_m, double time_s) const;
+  // How fast the thrusters of vehicles that name their wash drive the water at a place of the world.
+  double wash_m_s(const PhysicsState& state, const Vec3& place_m) const;
   // The newest readings of a vehicle's sensors; null where it has none.
   const rov::SensorReadings* readings(const PhysicsState& state, std::size_t vehicle) const;
   // The battery of a vehicle; null where its file names none.
@@ -223,6 +228,7 @@ class PhysicsWorld {
   SourceNames sources_;
   PhysicsInputs start_inputs_;
   Modems modems_;
+  std::vector<FollowedPoint> followed_;
   Things things_;
   Tethers tethers_;
   double water_kg_m3_ = 1028.0;

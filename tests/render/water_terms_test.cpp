@@ -6,6 +6,7 @@
 #include <set>
 
 #include "engine/gpu/frames.hpp"
+#include "engine/render/bubble_field.hpp"
 #include "engine/render/particles.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/render/sea_waves.hpp"
@@ -191,8 +192,9 @@ TEST(Snow, AViewGetsTheGrainsInItsSight) {
   ViewDesc view;
   view.world_from_view = {Vec3(3.0, -9.0, 1.0), from_yaw_pitch_roll(0.3, -0.2, 0.1)};
   const ViewSet views{.width = 600, .height = 600, .views = {view}};
-  SnowField field;
-  const ViewParticles seen = view_particles(motion, field, 7, views, 2.0);
+  SnowField snow;
+  BubbleField bubbles;
+  const ViewParticles seen = view_particles(motion, snow, bubbles, 7, views, 2.0);
   const Vec3 origin = views.origin_m();
   std::size_t expected = 0;
   std::set<std::uint32_t> looks;
@@ -223,8 +225,9 @@ TEST(Snow, SmallSpotsAreThinnedOutAndKeepTheirLight) {
   view.tangents = {-1.0, 1.0, -1.0, 1.0};
   const ViewSet views{.width = 200, .height = 200, .views = {view}};
   SnowField field;
+  BubbleField bubbles;
   const auto seen = [&](double spot_px) {
-    return view_particles(motion, field, 7, views, 2.0, 1.0, spot_px).particles;
+    return view_particles(motion, field, bubbles, 7, views, 2.0, 1.0, spot_px).particles;
   };
   const auto light = [](const std::vector<shared::Particle>& particles) {
     double sum = 0.0;
@@ -270,8 +273,9 @@ TEST(Bubbles, GrowRiseAndEndAtTheSurfaceTheSameEachTime) {
   source.object = 0;
   source.height_m = 20.0;
   std::vector<WorldParticle> at, again;
-  add_bubbles(motion, source, 0, 9, 33.0, at);
-  add_bubbles(motion, source, 0, 9, 33.0, again);
+  BubbleField field;
+  field.append(motion, source, 0, 9, 33.0, at);
+  field.append(motion, source, 0, 9, 33.0, again);
   ASSERT_GT(at.size(), 100u);
   ASSERT_EQ(at.size(), again.size());
   for (std::size_t i = 0; i < at.size(); ++i) {
@@ -281,7 +285,7 @@ TEST(Bubbles, GrowRiseAndEndAtTheSurfaceTheSameEachTime) {
   }
   // Two moments later the same bubble is higher and larger, by Boyle.
   std::vector<WorldParticle> later;
-  add_bubbles(motion, source, 0, 9, 33.5, later);
+  field.append(motion, source, 0, 9, 33.5, later);
   int followed = 0;
   for (const WorldParticle& a : at)
     for (const WorldParticle& b : later)
@@ -292,6 +296,31 @@ TEST(Bubbles, GrowRiseAndEndAtTheSurfaceTheSameEachTime) {
         EXPECT_NEAR(b.radius_m / a.radius_m, std::cbrt(pressures), 1e-3);
       }
   EXPECT_GT(followed, 50);
+}
+
+TEST(Bubbles, AreTheSameWhetherTheirBreathsAreKept) {
+  scene::Scene scene;
+  scene.objects.resize(1);
+  scene.objects[0].mount.pose.position_m = Vec3(1.0, -30.0, 2.0);
+  const scene::MotionSource motion(scene);
+  scene::BubbleSource source;
+  source.object = 0;
+  BubbleField kept;
+  for (const double time_s : {100.0, 100.1, 117.0, 60.0, 4e5}) {
+    std::vector<WorldParticle> by_kept, anew;
+    kept.append(motion, source, 0, 9, time_s, by_kept);
+    BubbleField().append(motion, source, 0, 9, time_s, anew);
+    ASSERT_GT(anew.size(), 100u);
+    ASSERT_EQ(by_kept.size(), anew.size());
+    for (std::size_t i = 0; i < anew.size(); ++i)
+      EXPECT_EQ(by_kept[i].position_m, anew[i].position_m);
+  }
+  // Other settings, another seed.
+  source.flow_m3_s *= 0.5;
+  std::vector<WorldParticle> fewer, anew;
+  kept.append(motion, source, 0, 10, 4e5, fewer);
+  BubbleField().append(motion, source, 0, 10, 4e5, anew);
+  EXPECT_EQ(fewer.size(), anew.size());
 }
 
 TEST(Bubbles, CarryTheGasThatTheSourceNamesAsTheyBreakUp) {
@@ -312,7 +341,7 @@ TEST(Bubbles, CarryTheGasThatTheSourceNamesAsTheyBreakUp) {
   std::vector<double> diameters;
   for (int run = 0; run < kRuns; ++run) {
     std::vector<WorldParticle> bubbles;
-    add_bubbles(motion, source, 0, std::uint64_t(100 + run), 200.0 + 7.7 * run, bubbles);
+    BubbleField().append(motion, source, 0, std::uint64_t(100 + run), 200.0 + 7.7 * run, bubbles);
     for (const WorldParticle& b : bubbles) {
       flow_m3_s += 4.0 / 3.0 * kPi * b.radius_m * b.radius_m * b.radius_m * b.velocity_m_s.y /
                    source.height_m / kRuns;
@@ -384,14 +413,48 @@ TEST(Silt, IsKickedUpOnlyNearTheBedAndSettles) {
   scene.objects[0].mount.pose.position_m.y = -8.0;
   add_silt(motion, source, 0, 1, 50.0, silt);
   EXPECT_TRUE(silt.empty());
+  // What rests on the bed raises none; what moves over it does.
   scene.objects[0].mount.pose.position_m.y = -9.7;
   add_silt(motion, source, 0, 1, 50.0, silt);
+  EXPECT_TRUE(silt.empty());
+  class Goes final : public scene::SimulatedMotion {
+   public:
+    Vec3 from_m{0.0}, velocity_m_s{0.0};
+    double wash_m_s = 0.0;
+    std::optional<scene::MotionAt> at(std::size_t, double) const override { return std::nullopt; }
+    std::optional<scene::ModelPose> model_pose(std::size_t, const scene::Model&,
+                                               double) const override {
+      return std::nullopt;
+    }
+    std::optional<Mat4> model_from_node(std::size_t, const scene::Model&, int,
+                                        double) const override {
+      return std::nullopt;
+    }
+    std::optional<scene::FollowedPlace> followed(std::size_t, int, const Vec3&,
+                                                 double time_s) const override {
+      return scene::FollowedPlace{from_m + velocity_m_s * time_s, wash_m_s};
+    }
+  } goes;
+  goes.from_m = Vec3(0.0, -9.7, 0.0);
+  goes.velocity_m_s = Vec3(0.2, 0.0, 0.0);
+  add_silt(scene::MotionSource(scene, &goes), source, 0, 1, 50.0, silt);
   EXPECT_GT(silt.size(), 10u);
   for (const WorldParticle& cloud : silt) {
     EXPECT_GT(cloud.position_m.y, -10.0);
     EXPECT_LT(cloud.position_m.y, -8.5);
     EXPECT_LE(cloud.opacity, 1.0);
+    // It hangs where it was raised.
+    EXPECT_LT(cloud.position_m.x, 10.0 + 1.0);
   }
+  EXPECT_LT(silt.back().position_m.x, 5.0);
+  // Out of the fins' reach, but thrusters drive water over the bed.
+  goes.from_m.y = -7.0;
+  silt.clear();
+  add_silt(scene::MotionSource(scene, &goes), source, 0, 1, 50.0, silt);
+  EXPECT_TRUE(silt.empty());
+  goes.wash_m_s = 0.3;
+  add_silt(scene::MotionSource(scene, &goes), source, 0, 1, 50.0, silt);
+  EXPECT_GT(silt.size(), 10u);
 }
 
 TEST(GpuWaves, AreTheSameAsInDoubleNearTheOriginAndFarOut) {

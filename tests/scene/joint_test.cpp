@@ -49,7 +49,7 @@ class LiftsTheArm final : public SimulatedMotion {
     for (const double time_s : {0.0, 2.0})
       ends_.push_back({time_s,
                        {glm::angleAxis(time_s, Vec3(1, 0, 0)), glm::angleAxis(0.3, Vec3(0, 0, 1))},
-                       {Vec3(1.0), Vec3(1.0 + 0.1 * time_s)}});
+                       {Vec3(1.0), Vec3(1.0)}});
   }
 
  private:

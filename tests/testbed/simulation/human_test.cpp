@@ -135,7 +135,7 @@ TEST(HumanDive, WhatIsDrawnIsTheBodyOfThePhysics) {
       if (i == 0) first_foot = in_model;
       moved_m = std::max(moved_m, glm::distance(in_model, first_foot));
     }
-    const Vec3 scale = motion.keys[0].scales[diver::kAbdomen];
+    const Vec3 scale = key.scales[diver::kAbdomen];
     breath = std::max(breath, scale.z - 1.0);
   }
   EXPECT_GT(moved_m, 0.15);
@@ -156,7 +156,7 @@ TEST(HumanDive, IsDrawnAtItsHeightWithItsGear) {
         *dive.scene.models[static_cast<std::size_t>(dive.scene.objects[human.object].model)];
     scene::NodeKey key = drawn_joints(human, human.start, 0.0);
     for (Quat& turn : key.rotations) turn = Quat(1.0, 0.0, 0.0, 0.0);  // as it was built
-    const scene::ModelPose pose = scene::evaluate_pose(model, {human.nodes, {key}}, 0.0);
+    const scene::ModelPose pose = scene::evaluate_pose(model, {human.nodes, &key}, 0.0);
     // Head to foot, which no gear lengthens.
     const auto at = [&](diver::Segment s) {
       return Vec3(pose.model_from_node[static_cast<std::size_t>(human.nodes[s])][3]);
