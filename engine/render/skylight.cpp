@@ -203,6 +203,8 @@ double SkylightGrid::at(const Vec3& place_m) const {
   const Vec3 p = (place_m - low_m) / cell_m - 0.5;
   const Vec3 base = glm::floor(p), part = p - base;
   double sum = 0.0;
+  if (base.x < -1 || base.y < -1 || base.z < -1 || base.x >= nx || base.y >= ny || base.z >= nz)
+    return 1.0;
   if (base.x >= 0 && base.y >= 0 && base.z >= 0 && base.x + 1 < nx && base.y + 1 < ny &&
       base.z + 1 < nz) {
     // Within the grid, where thousands of particles ask.

@@ -24,8 +24,10 @@ std::uint64_t word(std::int64_t cell) {
 // its soft spot has twice the light of its middle spread over a disk of 0.75 pixels at least
 // (shaders/particles.vert).
 bool fades_away(double radius_m, double opacity, double range2_m2, double pixels) {
-  const double own2 = radius_m * radius_m * pixels * pixels / std::max(range2_m2, 1e-6);
-  return 2.0 * own2 / (own2 + 0.56) * opacity < 0.003;
+  // With p the square of its radius in pixels: 2 p / (p + 0.56) opacity < 0.003, without a
+  // division.
+  const double own2 = radius_m * radius_m * pixels * pixels;
+  return own2 * (2.0 * opacity - 0.003) < 0.003 * 0.56 * std::max(range2_m2, 1e-6);
 }
 
 double cell_size_m(double density_m3) {
@@ -99,6 +101,7 @@ void SnowField::visit(const scene::Snow& snow, const Vec3& center_m, double time
     return static_cast<std::int64_t>(std::floor((center[axis] + snow.range_m) / cell_m));
   };
   const double reach_m = snow.range_m + half_m, range2_m2 = snow.range_m * snow.range_m;
+  const double fades_m = 0.7 * snow.range_m;  // from there on
   std::size_t seen = 0;
   for (std::int64_t y = low(1); y <= high(1); ++y)
     for (std::int64_t z = low(2); z <= high(2); ++z)
@@ -113,11 +116,13 @@ void SnowField::visit(const scene::Snow& snow, const Vec3& center_m, double time
           const Vec3 at = grain.place_m - center;
           const double distance2_m2 = glm::dot(at, at);
           if (distance2_m2 >= range2_m2 || center_m.y + at.y >= 0.0) continue;
-          const double range_m = std::sqrt(distance2_m2);
-          visit_grain(grain, at,
-                      grain.opacity *
-                          (1.0 - glm::smoothstep(0.7 * snow.range_m, snow.range_m, range_m)) *
-                          glm::smoothstep(kNearest_m, kNear_m, range_m));
+          double opacity = grain.opacity;
+          if (distance2_m2 < kNear_m * kNear_m || distance2_m2 > fades_m * fades_m) {
+            const double range_m = std::sqrt(distance2_m2);
+            opacity *= (1.0 - glm::smoothstep(fades_m, snow.range_m, range_m)) *
+                       glm::smoothstep(kNearest_m, kNear_m, range_m);
+          }
+          visit_grain(grain, at, opacity);
         }
       }
   // Cells out of sight are let go of once they are more than those in sight; looking at all of them
