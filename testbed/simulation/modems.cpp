@@ -84,9 +84,9 @@ Result<Modems> Modems::create(const scene::Scene& scene, const Movers& movers) {
                                             : OwnerSort::kObject,
                        .owner = static_cast<std::uint32_t>(owner),
                        .position_m = rov::ned_from_world(said.position_m),
+                       .object = Place(scene, {.object = static_cast<int>(said.object)}, movers),
                        .turnaround_s = said.turnaround_s,
                        .ranging = said.usbl};
-    modem.at_rest.pose = scene.world_from(object.mount);
     out.all_.push_back(std::move(modem));
     out.settings_.push_back(settings_of(said));
   }
@@ -133,7 +133,7 @@ ModemSort Modems::sort_of(OwnerSort sort, std::uint32_t owner) const {
   return all_[*modem].ranging ? ModemSort::kRanges : ModemSort::kTalks;
 }
 
-Vec3 Modems::position_ned_m(std::size_t index, const PhysicsState& state) const {
+Vec3 Modems::position_ned_m(std::size_t index, const PhysicsState& state, double time_s) const {
   const PhysicsModem& modem = all_[index];
   if (modem.sort == OwnerSort::kVehicle) {
     const rov::State& body = state.vehicles()[modem.owner].body;
@@ -143,7 +143,7 @@ Vec3 Modems::position_ned_m(std::size_t index, const PhysicsState& state) const 
     const diver::RootState& root = state.humans()[modem.owner].human.root;
     return root.position_ned_m + root.attitude * modem.position_m;
   }
-  const Pose pose = motion_of(state.objects()[modem.owner]).value_or(modem.at_rest).pose;
+  const Pose pose = modem.object.at(state, time_s);
   return rov::ned_from_world(pose.position_m) +
          rov::ned_from_world(pose.rotation) * modem.position_m;
 }
@@ -159,7 +159,7 @@ struct Modems::Call {
 void Modems::say(const Call& call, std::size_t modem, sonar::ModemMessage message,
                  double at_s) const {
   sonar::send(call.channel, call.after.modems(), modem, message, at_s,
-              position_ned_m(modem, call.before));
+              position_ned_m(modem, call.before, call.from_s));
 }
 
 void Modems::send_asked(const Call& call, std::size_t index) const {
@@ -205,8 +205,8 @@ void Modems::range(const Call& call, std::size_t index) const {
 void Modems::fix(const Call& call, std::size_t index, const sonar::ModemReport& answer) const {
   const PhysicsModem& modem = all_[index];
   ModemTasks& tasks = call.after.modem_tasks()[index];
-  const Vec3 here = position_ned_m(index, call.after);
-  const Vec3 line = position_ned_m(modem.target, call.after) - here;
+  const Vec3 here = position_ned_m(index, call.after, call.to_s);
+  const Vec3 line = position_ned_m(modem.target, call.after, call.to_s) - here;
   const double distance = glm::length(line), level = std::hypot(line.x, line.y);
   const auto error = [&](std::uint64_t i) {
     return random_normal({call.channel.seed, kRangingStream + index, tasks.fix.count}, i);
@@ -274,7 +274,7 @@ void Modems::step(const PhysicsState& before, const PhysicsInputs& inputs,
     }
     range(call, i);
     send_asked(call, i);
-    places[i] = position_ned_m(i, after);
+    places[i] = position_ned_m(i, after, to_s);
   }
   sonar::step(call.channel, after.modems(), std::span(places).first(all_.size()), from_s, to_s);
   for (std::size_t i = 0; i < all_.size(); ++i) look(call, i);

@@ -9,7 +9,7 @@
 
 #include "engine/scene/scene.hpp"
 #include "engine/sim/step_time.hpp"
-#include "testbed/simulation/object_motion.hpp"
+#include "testbed/simulation/places.hpp"
 
 namespace neritic::testbed {
 
@@ -18,7 +18,7 @@ struct PhysicsModem {
   OwnerSort sort = OwnerSort::kVehicle;
   std::uint32_t owner = 0;
   Vec3 position_m{0.0};  // on the owner: forward, starboard, down
-  Motion at_rest;        // of an object until a sample places it
+  Place object;          // of an object: by samples, or by its own track or carrier
   double turnaround_s = 0.5;
   std::optional<scene::Ranging> ranging;
   std::size_t target = 0;  // of the ranging: a modem
@@ -34,8 +34,8 @@ class Modems {
   std::optional<std::size_t> find(OwnerSort sort, std::uint32_t owner) const;
   ModemSort sort_of(OwnerSort sort, std::uint32_t owner) const;
   const sonar::ModemWater& water() const { return water_; }
-  // Where a modem is.
-  Vec3 position_ned_m(std::size_t modem, const PhysicsState& state) const;
+  // Where a modem is; time_s: of the state.
+  Vec3 position_ned_m(std::size_t modem, const PhysicsState& state, double time_s) const;
 
   // After everything has moved: what is to be sent leaves where its sender was at the step's
   // beginning, what arrives is heard where its receiver is at the end.

@@ -129,6 +129,46 @@ TEST(SceneModem, AUsblRangesByTheTravelThereAndBack) {
   EXPECT_NEAR(off.state().modem_tasks()[0].fix.value.range_m, 404.0, 0.05);
 }
 
+// A ship that sails north at 20 m/s, a buoy on it, and an ROV that stays at the origin.
+std::string sailing_text(const std::string& beacon_inputs, const std::string& rov_modem) {
+  return std::string(kStillWater) +
+         "[[objects]]\nname = \"ship\"\nshape = \"box\"\nsize_m = [1, 1, 1]\ncollision = false\n"
+         "track = { waypoints_m = [[0, -6, -100], [0, -6, -2100]], speed_m_s = 20 }\n"
+         "[[objects]]\nname = \"beacon\"\nshape = \"box\"\nsize_m = [0.1, 0.1, 0.1]\n"
+         "collision = false\non = \"ship\"\nposition_m = [0, 0, -40]\ninputs = " +
+         beacon_inputs + "\nmodem = { fading = false }\n" +
+         rov_text("position_m = [0, -6, 0]\n" + rov_modem, "ada");
+}
+
+// Its own track or carrier has an object under the autopilot, and while its source is not heard.
+TEST(SceneModem, AModemIsWhereItsObjectsTrackOrCarrierHasIt) {
+  const std::string ranging =
+      "modem = { fading = false, usbl = { target = \"beacon\", interval_s = 4, range_noise_m = 0, "
+      "direction_noise_deg = 0 } }\n";
+  for (const char* inputs :
+       {"{ pose = \"autopilot\" }", "{ pose = { from = \"tracker\", then = \"autopilot\" } }"}) {
+    TestDive dive = two(sailing_text(inputs, ranging));
+    for (const double asked_s : {0.0, 4.0, 8.0}) {
+      dive.run(asked_s + 3.9 - dive.time_s());
+      const auto& fix = dive.state().modem_tasks()[1].fix;
+      ASSERT_EQ(fix.value.heard, 1u) << inputs;
+      // The ship sails on while the request comes after it, and for the turnaround of 0.5 s.
+      const double there_s = (140.0 + 20.0 * asked_s) / (1489.90 - 20.0);
+      const double back_s = (140.0 + 20.0 * (asked_s + there_s + 0.5)) / 1489.90;
+      EXPECT_NEAR(fix.value.travel_s, there_s + back_s, 1e-3) << inputs;
+      EXPECT_NEAR(fix.value.range_m, 0.5 * (there_s + back_s) * 1489.90, 0.5) << inputs;
+      EXPECT_NEAR(fix.value.bearing_rad, 0.0, 1e-3) << inputs;
+    }
+    // Both ways: what the beacon sends comes from there.
+    const double from_m = 140.0 + 20.0 * dive.time_s();
+    say(dive, "beacon/send", 2, 4);
+    const auto got = heard(dive, "ada/modem", 2.0);
+    const auto message = std::ranges::find(got, ModemKind::kMessage, &ModemReading::kind);
+    ASSERT_NE(message, got.end()) << inputs;
+    EXPECT_NEAR(message->heard_s - message->sent_s, from_m / 1489.90, 1e-3) << inputs;
+  }
+}
+
 TEST(SceneModem, OutOfReachARangeIsNotHeard) {
   TestDive dive = two(two_text(
       400.0, "modem = { source_level_db = 60, usbl = { target = \"bob\", interval_s = 1 } }\n"));
