@@ -1,10 +1,11 @@
 #include "testbed/simulation/scene_hash.hpp"
 
 #include <map>
+#include <set>
 
 #include "engine/core/files.hpp"
 #include "engine/core/hash.hpp"
-#include "testbed/simulation/static_scene.hpp"
+#include "testbed/simulation/model_hash.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -27,6 +28,7 @@ class SceneHash {
     if (scene.current) NERITIC_TRY_STATUS(add(*scene.current));
     number(scene.objects.size());
     for (const scene::Object& object : scene.objects) NERITIC_TRY_STATUS(add(scene, object));
+    add_carriers(scene);
     if (!scene.modems.empty()) add(scene.acoustics.value_or(scene::Acoustics{}));
     for (const scene::Modem& modem : scene.modems) add(modem);
     return {};
@@ -38,6 +40,11 @@ class SceneHash {
   template <class... Numbers>
   void numbers(Numbers... values) {
     (hash_.add(static_cast<double>(values)), ...);
+  }
+  // Absent differs from any value: what stands for it is chosen elsewhere.
+  void number_if(const std::optional<double>& value) {
+    number(value.has_value());
+    if (value) numbers(*value);
   }
   void text(const std::string& value) {
     hash_.add_span(std::span<const char>(value.data(), value.size()));
@@ -99,8 +106,8 @@ class SceneHash {
     number(modem.usbl.has_value());
     if (!modem.usbl) return;
     text(modem.usbl->target);
-    numbers(modem.usbl->interval_s, modem.usbl->range_noise_m, modem.usbl->direction_noise_rad,
-            modem.usbl->sound_m_s.value_or(-1.0));
+    numbers(modem.usbl->interval_s, modem.usbl->range_noise_m, modem.usbl->direction_noise_rad);
+    number_if(modem.usbl->sound_m_s);
   }
 
   void add(const scene::Mount& mount) {
@@ -121,25 +128,24 @@ class SceneHash {
     for (const auto& at : mount.track->attitudes) numbers(at.time_s), quat(at.rotation);
   }
 
-  // Vertices at rest and triangles: outlines of what moves, shapes of what is solid.
   void add(const scene::Model& model, const Vec3& scale) {
     auto& known = models_[{&model, {scale.x, scale.y, scale.z}}];
-    if (!known) {
-      SceneHash own({});
-      const auto points = rest_points(model, scale);
-      own.number(points.size());
-      for (const Vec3& point : points) own.vec(point);
-      own.number(model.meshes.size());
-      for (const scene::Mesh& mesh : model.meshes) {
-        own.number(mesh.primitives.size());
-        for (const scene::Primitive& p : mesh.primitives)
-          own.hash_.add_span(std::span<const std::uint32_t>(p.indices));
-      }
-      // A diver's joints are drawn by these; a vehicle's outline stands on them.
-      for (const scene::Node& node : model.nodes) own.text(node.name), own.vec(node.translation_m);
-      known = own.value();
-    }
+    if (!known) known = shape_hash(model, scale);
     number(*known);
+  }
+
+  // The objects that carry others on a joint.
+  void add_carriers(const scene::Scene& scene) {
+    std::set<int> carriers;
+    for (const scene::Object& object : scene.objects)
+      if (object.mount.joint >= 0) carriers.insert(object.mount.object);
+    for (const int index : carriers) {
+      const scene::Object& carrier = scene.objects.at(static_cast<std::size_t>(index));
+      text("carries on a joint"), numbers(index);
+      number(joints_hash(*scene.models.at(static_cast<std::size_t>(carrier.model)), carrier.clip));
+      numbers(carrier.clip_offset_s, carrier.clip_rate);
+      vec(carrier.scale);
+    }
   }
 
   Status add(const scene::Scene& scene, const scene::Object& object) {
@@ -190,13 +196,12 @@ class SceneHash {
     number(inputs.size());
     for (const scene::InputChoice& choice : inputs) {
       text(choice.group), text(choice.from), text(choice.then);
-      numbers(choice.hold_s.value_or(-1.0));
+      number_if(choice.hold_s);
     }
   }
   void add(const scene::Aim& aim) { numbers(aim.object), vec(aim.point_m); }
   void add(const scene::Facing& facing) {
-    number(facing.heading_rad.has_value());
-    numbers(facing.heading_rad.value_or(0.0));
+    number_if(facing.heading_rad);
     number(facing.look_at.has_value());
     if (facing.look_at) add(*facing.look_at);
     number(facing.tilt);
@@ -230,8 +235,8 @@ class SceneHash {
     number(condition.effects.size());
     for (const std::string& effect : condition.effects) text(effect);
     number(condition.acts);
-    numbers(condition.water_c.value_or(12.0), condition.fat_share,
-            condition.oxygen_tolerance.value_or(-1e9));
+    numbers(condition.fat_share);
+    number_if(condition.water_c), number_if(condition.oxygen_tolerance);
   }
   void add(const scene::Regulator& regulator) {
     text("regulator"), text(regulator.donor);

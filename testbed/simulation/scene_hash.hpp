@@ -1,4 +1,5 @@
-// A hash of what a scene's physics is built from: files, bodies, missions, currents, solid things.
+// A hash of what a scene's physics is built from: files, bodies, missions, currents, solid things,
+// tracks, and the models and clips of what carries things on a joint.
 // States are saved with it, so that none goes on in another scene. Things that neither move by
 // physics nor collide (cameras, sonars, lamps, water colour) do not count.
 #pragma once
