@@ -653,6 +653,45 @@ class Tasks(unittest.TestCase):
         measures = self.run_of(self.made(stages=stages))
         self.assertEqual([round(measures[k], 6) for k in ("a_s", "b_s", "time_s")], [3.0, 1.5, 4.5])
 
+    def test_what_is_not_known_says_neither_yes_nor_no(self):
+        import formulas
+        unknown, values = "x / 0", {"yes": 2.0, "no": 0.0}
+        moment = SimpleNamespace(number=lambda name: values.get(name, math.nan))
+
+        def value(text):
+            return formulas.Formula("", text, [], ["x", "yes", "no"]).value(moment)
+        for text in ("x", unknown, "not x", "x < 1", "x != 1", "1 < x < 3", "yes and x", "x and yes", "no or x", "x or no", "not (x < 1)", "x == x"):
+            self.assertTrue(math.isnan(value(text)), text)
+            self.assertFalse(formulas.says_yes(value(text)), text)
+        for text, says in (("x and no", False), ("no and x", False), ("x or yes", True), ("yes or x", True), ("3 < yes < x", False), ("not no", True),
+                           ("not yes", False), ("yes and yes", True), ("no or no", False), ("1 < yes < 3", True), ("yes", True), ("no", False)):
+            self.assertEqual((value(text) == value(text), formulas.says_yes(value(text))), (True, says), text)
+
+    def test_no_stage_ends_and_no_run_stops_by_what_is_not_known(self):
+        late = 'participants = ["rov", "diver"]\ntells = ["done"]\nseconds = 3.0'
+        for until in ("done", "1 / 0", "heart(rov) - 500", "not (heart(rov) < 500)"):
+            stages = f'[[stages]]\nname = "work"\nuntil = "{until}"\n'
+            measures = self.run_of(self.made(task=late, stages=stages, player="return {}"))
+            self.assertEqual((measures["success"], measures["failure"]), (False, f"stage work not done in 3 s: {until} was no number at the end"))
+        known = '[[stages]]\nname = "work"\nuntil = "done"\nheld_s = 0.5\n'
+        for value, failure in ((0.0, "stage work not done in 3 s"), (1.0, None)):
+            self.assertEqual(self.run_of(self.made(task=late, stages=known, player=f'return {{"done": {value}}}'))["failure"], failure)
+        stages = '[[stages]]\nname = "work"\nuntil = "time > 1"\n'
+        for stop in ("heart(rov) - 500", "done"):
+            failure = self.run_of(self.made(task=f'{late}\nstop = "{stop}"', stages=stages, player="return {}"))["failure"]
+            self.assertEqual(failure, f"the stopping rule was no number at any moment: {stop}")
+        for stop, failure in (("heart(diver) > 500", None), ("heart(diver) > 50", "stopped in stage work: heart(diver) > 50")):
+            self.assertEqual(self.run_of(self.made(task=f'participants = ["diver"]\nseconds = 3.0\nstop = "{stop}"', stages=stages))["failure"], failure)
+
+    def test_measures_leave_out_the_moments_that_are_not_known(self):
+        stages = '[[stages]]\nname = "work"\nuntil = "time > 1"\n'
+        for of, told in (("told < 0.5", {"ever": False, "share": 0.0, "duration": 0.0}), ("told", {"ever": True, "share": 1.0, "duration": 0.5})):
+            for statistic, value in told.items():
+                measure = f'[[measures]]\nname = "m"\nof = "{of}"\nstatistic = "{statistic}"\n'
+                player = 'self.n = getattr(self, "n", 0) + 1\n        return {"told": 0.5} if self.n % 2 else {}'
+                measures = self.run_of(self.made(task='tells = ["told"]', stages=stages + measure, player=player))
+                self.assertAlmostEqual(measures["m"], value, delta=0.051, msg=(of, statistic))
+
     def test_no_name_stands_for_two_things(self):
         stage = '[[stages]]\nname = "{}"\nuntil = "time > 1"\n'
         measure = stage.format("near") + '[[measures]]\nname = "{}"\nof = "time"\n'

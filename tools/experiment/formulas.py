@@ -2,6 +2,9 @@
 
 Numbers, comparisons, and / or / not, + - * / **, min and max of numbers, and the functions of SIGNALS on participants' names.
 Nothing else is evaluated. World axes: east, north, up.
+
+NaN is what is not known, as a number that nobody has told yet. It says neither yes nor no: a comparison with it is NaN, and so are
+"not", "and" and "or" unless their other values decide (Kleene 1952, 64).
 """
 import ast
 import math
@@ -15,6 +18,23 @@ _BINARY = {ast.Add: lambda a, b: a + b, ast.Sub: lambda a, b: a - b, ast.Mult: l
            ast.Div: lambda a, b: a / b if b else math.nan, ast.Pow: lambda a, b: _power(a, b)}
 _COMPARE = {ast.Lt: lambda a, b: a < b, ast.LtE: lambda a, b: a <= b, ast.Gt: lambda a, b: a > b,
             ast.GtE: lambda a, b: a >= b, ast.Eq: lambda a, b: a == b, ast.NotEq: lambda a, b: a != b}
+
+
+def says_yes(value):
+    """Whether a formula's value says yes: any number but 0. NaN does not."""
+    return value == value and value != 0
+
+
+def _decided(values, decisive):
+    """The "or" (decisive: True) or "and" (False) of values: NaN where none decides and one is not known. Later ones are not asked
+    for once one decides."""
+    known = True
+    for value in values:
+        if value != value:
+            known = False
+        elif says_yes(value) == decisive:
+            return decisive
+    return not decisive if known else math.nan
 
 
 def _power(a, b):
@@ -139,20 +159,22 @@ class Formula:
             return m.number(node.id)
         if isinstance(node, ast.UnaryOp):
             value = self._value(node.operand, m)
-            return -value if isinstance(node.op, ast.USub) else not value
+            return -value if isinstance(node.op, ast.USub) else math.nan if value != value else not value
         if isinstance(node, ast.BinOp):
             return _BINARY[type(node.op)](self._value(node.left, m), self._value(node.right, m))
         if isinstance(node, ast.BoolOp):
             values = (self._value(v, m) for v in node.values)
-            return all(values) if isinstance(node.op, ast.And) else any(values)
+            return _decided(values, isinstance(node.op, ast.Or))
         if isinstance(node, ast.Compare):
-            left = self._value(node.left, m)
-            for op, right in zip(node.ops, node.comparators):
-                right = self._value(right, m)
-                if not _COMPARE[type(op)](left, right):
-                    return False
-                left = right
-            return True
+            return _decided(self._compared(node, m), False)
         if node.func.id in _NUMBERS:
             return _NUMBERS[node.func.id]([float(self._value(a, m)) for a in node.args])
         return SIGNALS[node.func.id][0](m, *(a.id for a in node.args))
+
+    def _compared(self, node, m):
+        """Of "a < b < c": whether a < b, and whether b < c; NaN where a side is not known."""
+        left = self._value(node.left, m)
+        for op, right in zip(node.ops, node.comparators):
+            right = self._value(right, m)
+            yield math.nan if left != left or right != right else _COMPARE[type(op)](left, right)
+            left = right

@@ -17,6 +17,7 @@ import numpy as np
 
 import files_read
 import task_figures
+from formulas import says_yes
 from scenario import Failed, Refused
 from task_file import TaskFile, check_class, check_participants
 
@@ -54,6 +55,7 @@ class _Course:
 
     def __init__(self, task):
         self.task, self.stage, self.begun, self.held_from, self.ends, self.failure = task, 0, 0.0, None, {}, None
+        self.until_known = self.stop_known = False  # whether the stage's trigger is a number now, and whether the stopping rule ever was
         self.rows = {m["name"]: [] for m in task.measures}
         self.series = {"t": [], "stage": [], **{m["name"]: [] for m in task.measures}}
 
@@ -71,11 +73,16 @@ class _Course:
             self.series[m["name"]].append(round(value, 5) if math.isfinite(value) else None)
             if m["stage"] in (None, self.name()):
                 self.rows[m["name"]].append(value)
-        if self.task.stop is not None and self.task.stop.value(moment):
-            self.failure = f"stopped in stage {self.name()}: {self.task.stop.text}"
-            return
+        if self.task.stop is not None:
+            stops = self.task.stop.value(moment)
+            self.stop_known |= stops == stops
+            if says_yes(stops):
+                self.failure = f"stopped in stage {self.name()}: {self.task.stop.text}"
+                return
         now = self.task.stages[self.stage]
-        if now["until"].value(moment):
+        done = now["until"].value(moment)
+        self.until_known = done == done
+        if says_yes(done):
             self.held_from = time if self.held_from is None else self.held_from
             if time - self.held_from >= now["held_s"] - 1e-9:
                 self.ends[f"{now['name']}_s"] = time - self.begun
@@ -84,11 +91,17 @@ class _Course:
         else:
             self.held_from = None
         if time - self.begun > now["at_most_s"]:
-            self.failure = f"stage {now['name']} not done in {now['at_most_s']:g} s"
+            self._fail_late(now["at_most_s"])
+
+    def _fail_late(self, limit_s):
+        text = self.task.stages[self.stage]["until"].text
+        self.failure = f"stage {self.name()} not done in {limit_s:g} s" + ("" if self.until_known else f": {text} was no number at the end")
 
     def measures(self, step_s):
         if self.stage < len(self.task.stages) and self.failure is None:
-            self.failure = f"stage {self.name()} not done in {self.task.seconds:g} s"
+            self._fail_late(self.task.seconds)
+        if self.failure is None and self.task.stop is not None and not self.stop_known:
+            self.failure = f"the stopping rule was no number at any moment: {self.task.stop.text}"
         absent = {}
         out = {"success": self.failure is None, **self.ends, "failure": self.failure, "absent": absent}
         if self.failure is None:
@@ -201,5 +214,5 @@ def _statistic(name, values, step_s):
         return None
     return {"last": lambda: float(values[-1]), "first": lambda: float(values[0]), "mean": lambda: float(values.mean()),
             "rms": lambda: float(np.sqrt((values ** 2).mean())), "min": lambda: float(values.min()),
-            "max": lambda: float(values.max()), "ever": lambda: bool((values > 0.5).any()),
-            "share": lambda: float((values > 0.5).mean()), "duration": lambda: float((values > 0.5).sum() * step_s)}[name]()
+            "max": lambda: float(values.max()), "ever": lambda: bool((values != 0).any()),
+            "share": lambda: float((values != 0).mean()), "duration": lambda: float((values != 0).sum() * step_s)}[name]()
