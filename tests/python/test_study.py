@@ -329,6 +329,48 @@ open(os.path.join(sys.argv[2], "whole"), "w").close()
                 time.sleep(0.05)
             self.assertEqual(os.listdir(os.path.join(self.folder, "participants")), [])
 
+    def test_a_block_whose_criteria_do_not_hold_is_done(self):
+        with tempfile.TemporaryDirectory() as self.scratch:
+            program, tells = os.path.join(self.scratch, "program"), os.path.join(self.scratch, "tells")
+            self.write("program", f"""#!{sys.executable}
+import json, os, sys
+status, names, broken = json.load(open({tells!r}))
+for name in names:
+    folder = os.path.join(sys.argv[sys.argv.index("--out") + 1], name)
+    os.makedirs(folder, exist_ok=True)
+    with open(os.path.join(folder, "results.json.tmp"), "w") as file:
+        json.dump({{"broken": broken}}, file)
+    os.replace(file.name, os.path.join(folder, "results.json"))
+sys.exit(status)
+""")
+            os.chmod(program, 0o755)
+
+            def run(name, experiment, *attempts):
+                """The exit statuses of attempts at the first block, which are (what its program does, what is typed), and the last one's output."""
+                self.folder, statuses = os.path.join(self.scratch, name), []
+                self.write("plan.toml", self.PLAN.replace('after_block = ["nasa_tlx"]\nafter = ["ssq"]', '').replace(
+                    'name = "a"\n', f'name = "a"\ncommand = ["experiment", "{experiment}", "--out", "{{folder}}/a", "--resume"]\n'))
+                self.assertEqual(self.study("begin", "--plan", os.path.join(self.scratch, "plan.toml"))[0], 0)
+                self.study("enrol", answers="yes\n")
+                for does, typed in attempts:
+                    self.write("tells", json.dumps(does))
+                    self.write("answers", typed + "\n\n")
+                    done = subprocess.run([sys.executable, "-B", os.path.join(TOOLS, "study.py"), "--program", program, "run", self.folder, "P01",
+                                           "--answers", os.path.join(self.scratch, "answers")], capture_output=True, text=True, timeout=60)
+                    statuses.append(done.returncode)
+                return statuses, done.stdout + done.stderr
+
+            every = scenario.names()
+            self.assertEqual(run("fails", "own.toml", ([1, ["."], 0], ""))[0], [0])
+            self.assertEqual(run("breaks", "own.toml", ([1, ["."], 1], ""), ([1, ["."], 1], ""), ([1, ["."], 0], ""))[0], [1, 1, 0])
+            self.assertEqual(run("all", "all", ([1, every[1:], 0], ""), ([1, every, 0], ""))[0], [1, 0])
+            # Results of the attempt before are none of one that could not be done.
+            statuses, told = run("old", "own.toml", ([2, ["."], 0], ""), ([1, [], 0], ""), ([1, [], 0], "no\nleave"))
+            self.assertEqual(statuses, [1, 1, 0], told)
+            self.assertIn('found "no"; accepted: Enter, leave', told)
+            marks = [json.loads(line) for line in self.read("participants/P01/markers.jsonl").splitlines()]
+            self.assertEqual([m.get("status", m["marker"]) for m in marks if m.get("block") == "a"], ["block begins", 2, "block begins", 1, "block left"])
+
     def test_blocks_write_into_the_participants_folder_alone(self):
         with tempfile.TemporaryDirectory() as self.scratch:
             self.folder = os.path.join(self.scratch, "study")

@@ -3,6 +3,7 @@ withdrawal erases. A flag that is not here is refused, since nobody has said whe
 
 Not here: `keys`, whose folder has no flag, and `study`, which writes into another study's folder.
 """
+import os
 import re
 
 from scenario import Refused
@@ -60,6 +61,25 @@ def check(where, words):
                 raise Refused(f"{where}: found --{flag} {value}; accepted: --{flag} {{record}}... or {{folder}}/..., the participant's own")
         elif flag not in others | OF_ALL:
             raise Refused(f"{where}: found --{flag}; accepted, of {name}: {', '.join('--' + f for f in sorted(writes | others))}")
+
+
+def value_of(words, flag):
+    """The value of --flag in a command's words, or None."""
+    for i, word in enumerate(words):
+        name, mark, value = word.partition("=")
+        if name == f"--{flag}":
+            return value if mark else "".join(words[i + 1:i + 2])
+    return None
+
+
+def results_of(words, shipped):
+    """The files results.json that an `experiment` of these words writes, each once all of its runs are made; none of another command.
+    shipped: the scenarios of `experiment all`."""
+    plain = [w for w in words if not w.startswith("-")]
+    out = value_of(words, "out")
+    if plain[:1] != ["experiment"] or not out:
+        return []
+    return [os.path.join(out, *folder, "results.json") for folder in ([[name] for name in shipped] if "all" in plain[1:2] else [[]])]
 
 
 def _is_own(path):

@@ -32,6 +32,7 @@ sys.dont_write_bytecode = True
 import block_commands
 import questionnaires
 from report import write_file
+import scenario
 from scenario import Failed, Refused, check_keys
 
 WORDS = ("begin", "enrol", "run", "ask", "mark", "withdraw", "table", "wizard")
@@ -342,14 +343,57 @@ def _run(asked, screen, present):
         done = os.path.join(place, f"{block['name']}.done")
         if not os.path.exists(done):
             screen.say(f"\nBlock {turn} of {len(order)}: {block.get('about', block['name'])}")
-            screen.ask("Press Enter to begin.")
-            _block(asked, present, block, turn)
+            tries = _attempts(place, block["name"]) + 1
+            if _begins(screen, anew=tries > 1):
+                _block(asked, present, block, turn, tries)
+            else:
+                note(place, marker="block left", block=block["name"], turn=turn)
             write_file(done, "")
         for name in head.get("after_block", []):
             questionnaire(study, who, name, block["name"], screen)
     for name in head.get("after", []):
         questionnaire(study, who, name, "after", screen)
     screen.say(f"\n{who} has done all blocks. Thank you.")
+
+
+def _attempts(place, block):
+    """How many attempts at a block have left something. A recording that a crash cut off stays as .mcap.part, under a number of its own."""
+    tries = 0
+    while any(os.path.exists(os.path.join(place, f"{block}_{tries + 1}{end}")) for end in ("", ".mcap", ".mcap.part", ".log")):
+        tries += 1
+    return tries
+
+
+def _begins(screen, anew):
+    """Waits for Enter. A block that was begun before may be left in its place: false."""
+    if not anew:
+        screen.ask("Press Enter to begin.")
+        return True
+    while typed := screen.ask("It was begun before. Press Enter to begin it anew, or type leave to go on without it:").lower():
+        if typed == "leave":
+            return False
+        screen.say(f"    found \"{typed}\"; accepted: Enter, leave")
+    return True
+
+
+def _version(file):
+    """What another writing of the file changes; None of a file that is not there."""
+    if not os.path.exists(file):
+        return None
+    about = os.stat(file)
+    return about.st_ino, about.st_mtime_ns
+
+
+def _gave_results(files, before):
+    """Whether an experiment wrote all of its results since then, and no run of it broke: one of its criteria does not hold, which is a
+    result and would be the same again."""
+    if not files or any(_version(f) in (None, old) for f, old in zip(files, before)):
+        return False
+    for file in files:
+        with open(file, encoding="utf-8") as read:
+            if json.load(read)["broken"]:
+                return False
+    return True
 
 
 def _program_of(words, told, present):
@@ -367,16 +411,15 @@ def _program_of(words, told, present):
         raise
 
 
-def _block(asked, present, block, turn):
+def _block(asked, present, block, turn, tries):
     """The block's program; {record} becomes a file of the participant's folder, numbered so that no try replaces another."""
     block_commands.check(f"{asked.folder}/study.json: block {block['name']}", block.get("command", []))  # of a study that began long ago, too
-    tries, place = 1, present.place
-    # A recording that a crash cut off stays as .mcap.part, under a number of its own.
-    while any(os.path.exists(os.path.join(place, f"{block['name']}_{tries}{end}")) for end in ("", ".mcap", ".mcap.part", ".log")):
-        tries += 1
+    place = present.place
     record = os.path.join(place, f"{block['name']}_{tries}")
     port, listens = str(_free_port()), os.path.join(place, PORT)
     words = [w.replace("{record}", record).replace("{folder}", place).replace("{markers}", port) for w in block.get("command", [])]
+    results = block_commands.results_of(words, scenario.names())
+    before = [_version(f) for f in results]
     begins, ended = note(place, marker="block begins", block=block["name"], turn=turn, attempt=tries), threading.Event()
     if any("{markers}" in w for w in block.get("command", [])):
         write_file(listens, port)
@@ -391,11 +434,11 @@ def _block(asked, present, block, turn):
         if os.path.exists(listens):
             os.remove(listens)
     note(place, marker="block ends", block=block["name"], turn=turn, attempt=tries, status=status)
-    if status != 0:
+    if status != 0 and not (status == 1 and _gave_results(results, before)):
         with open(record + ".log", encoding="utf-8", errors="replace") as told:
             last = told.read().strip().splitlines()[-1:]
         raise Failed(f"study: block {block['name']} ended with status {status} ({last[0] if last else 'it told nothing'}; all of it: "
-                     f"{record}.log); `neritic study run` begins it anew")
+                     f"{record}.log); `neritic study run` begins it anew or leaves it")
 
 
 def withdraw(asked, screen):
