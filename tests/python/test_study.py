@@ -230,13 +230,43 @@ class Study(unittest.TestCase):
             self.assertEqual(status, 0, text)
             for words in ("this is the first question", 'found "yes"; accepted: Enter, back'):
                 self.assertIn(words, text)
-            answers = [json.loads(self.read(f"participants/P01/{block}_nasa_tlx.json")) for block in "ab"]
+            answers = [json.loads(self.read(f"participants/P01/{block}-nasa_tlx.json")) for block in "ab"]
             self.assertEqual([a["answers"] for a in answers], [[50, 60, 0, 0, 0, 10], [50, None, 0, 0, 0, 10]])
             table = self.study("table")[1]
             self.assertIn("P01,a,1,20.0", table)
             self.assertNotIn("P01,b", table)  # a score of five scales would be another one
             self.assertRegex(table, "calm_mean")
             self.assertRegex(table, r"P01,after,,,.*4\.0")  # (4 + (6 - 2)) / 2
+
+    def test_each_block_and_questionnaire_has_answers_of_its_own(self):
+        own = "".join(f'[questionnaires.{name}]\nitems = ["x"]\n' for name in ("c", "b_c"))
+        plan = (self.PLAN.replace('["nasa_tlx"]', '["b_c", "c"]').replace('after = ["ssq"]\n', "").replace('name = "b"', 'name = "a_b"') + own)
+        for form in (2, 1):  # a study that began in format 1 goes on in it, whose names two can share
+            with tempfile.TemporaryDirectory() as self.scratch:
+                self.folder = os.path.join(self.scratch, "study")
+                self.write("plan.toml", plan)
+                self.assertEqual(self.study("begin", "--plan", os.path.join(self.scratch, "plan.toml"))[0], 0)
+                self.write("study/study.json", self.read("study.json").replace('"format": 2', f'"format": {form}'))
+                self.study("enrol", answers="yes\n")
+                status, text = self.study("run", "P01", answers="\n1\n\n2\n\n" + "\n3\n\n" + ("4\n\n" if form == 2 else ""))
+                self.assertEqual(status, 0, text)
+                table = self.study("table")[1]
+                self.assertIn("P01,a,1,2.0,1.0", table)
+                self.assertIn("P01,a_b,2,4.0,3.0" if form == 2 else "P01,a_b,2,,3.0", table)
+                self.write("study/study.json", self.read("study.json").replace(f'"format": {form}', '"format": 3'))
+                status, text = self.study("table")
+                self.assertEqual((status, text.count("\n")), (2, 1), text)
+                self.assertIn("study.json: found format 3; accepted: 1, 2", text)
+
+    def test_questionnaires_of_one_moment_do_not_give_one_score_twice(self):
+        with tempfile.TemporaryDirectory() as self.scratch:
+            self.folder = os.path.join(self.scratch, "study")
+            for names, told in (('"ssq", "ssq"', "ssq and ssq, which both give ssq_nausea"),
+                                ('"nasa_tlx", "nasa_tlx_weighted"', "nasa_tlx and nasa_tlx_weighted, which both give tlx_raw")):
+                self.write("plan.toml", self.PLAN.replace('after = ["ssq"]', f"after = [{names}]"))
+                status, text = self.study("begin", "--plan", os.path.join(self.scratch, "plan.toml"))
+                self.assertEqual((status, text.count("\n")), (2, 1), text)
+                self.assertIn(f"study.after: found {told}; accepted: one of them", text)
 
     def test_markers_reach_the_blocks_program_while_it_runs(self):
         with tempfile.TemporaryDirectory() as self.scratch:

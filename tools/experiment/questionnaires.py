@@ -69,6 +69,9 @@ class Form:
             return None, f"found {value}; {told}"
         return value, None
 
+    def score_names(self):
+        return list(self.score([low for _, low, _, _ in self.items]))
+
     def scores(self, answers):
         """None where an answer was declined: a score of what is left would not be the published one."""
         return None if None in answers else self.score(answers)

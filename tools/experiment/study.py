@@ -35,6 +35,9 @@ from report import write_file
 import scenario
 from scenario import Failed, Refused, check_keys
 
+# By the format of a study: what stands between block and questionnaire in a file's name. No name has a hyphen; by _ the answers of
+# two could share a file.
+JOINTS = {1: "_", 2: "-"}
 WORDS = ("begin", "enrol", "run", "ask", "mark", "withdraw", "table", "wizard")
 
 
@@ -56,9 +59,13 @@ def read_plan(path):
     for key in ("before", "after_block", "after"):
         if not isinstance(study.get(key, []), list):
             raise Refused(f"{path}: study.{key}: found {study[key]!r}; accepted: a list of {', '.join(forms)}")
+        asked = {}  # {score: its questionnaire}
         for name in study.get(key, []):
             if not isinstance(name, str) or name not in forms:
                 raise Refused(f"{path}: study.{key}: found {name!r}; accepted: {', '.join(forms)}")
+            for score in forms[name].score_names():
+                if asked.setdefault(score, name) != name or study[key].count(name) > 1:
+                    raise Refused(f"{path}: study.{key}: found {asked[score]} and {name}, which both give {score}; accepted: one of them")
     blocks = plan.get("blocks", [])
     if not isinstance(blocks, list) or not 1 <= len(blocks) <= 20:
         raise Refused(f"{path}: blocks: found {len(blocks) if isinstance(blocks, list) else blocks!r}; accepted: 1 to 20")
@@ -92,6 +99,8 @@ class Study:
         except ValueError:
             raise Refused(f"{path}: found no JSON; accepted: a file that `neritic study` wrote") from None
         self.plan = self.data["plan"]
+        if self.data.get("format") not in JOINTS:
+            raise Refused(f"{path}: found format {self.data.get('format')}; accepted: {', '.join(map(str, JOINTS))}")
         self.forms = _forms_of(path, self.plan)
         self.names = [b["name"] for b in self.plan["blocks"]]
 
@@ -105,6 +114,10 @@ class Study:
         if known[who]["withdrawn"] and not withdrawn_too:
             raise Refused(f"{self.folder}: found {who}, who has withdrawn; accepted: one who takes part")
         return os.path.join(self.folder, "participants", who)
+
+    def answers_file(self, place, when, name):
+        """Of a questionnaire (name) at a block (when; before and after are blocks too)."""
+        return os.path.join(place, f"{when}{JOINTS[self.data['format']]}{name}.json")
 
 
 @contextlib.contextmanager
@@ -236,7 +249,7 @@ def questionnaire(study, who, name, when, screen):
     """Asks what is not yet answered: a questionnaire that was interrupted goes on where it stopped. "back" asks the question before
     again, "skip" declines an answer, which is kept as null; a questionnaire with one has no score."""
     place, form = study.place(who), study.forms[name]
-    path = os.path.join(place, f"{when}_{name}.json")
+    path = study.answers_file(place, when, name)
     given = {"questionnaire": name, "when": when, "answers": []}
     if os.path.exists(path):
         with open(path, encoding="utf-8") as file:
@@ -294,7 +307,7 @@ def begin(asked):
         raise Failed(f"{asked.folder}: cannot be made: {error.strerror}") from None
     orders = questionnaires.latin_square(len(plan["blocks"]))
     write_file(os.path.join(asked.folder, "study.json"),
-               json.dumps({"format": 1, "plan": plan, "orders": orders, "participants": {}}, indent=2) + "\n")
+               json.dumps({"format": max(JOINTS), "plan": plan, "orders": orders, "participants": {}}, indent=2) + "\n")
     print(f"{asked.folder}: {len(plan['blocks'])} blocks in {len(orders)} orders; balanced after every {len(orders)} participants")
 
 
@@ -474,7 +487,7 @@ def scores(study):
         for when in ["before", *order, "after"]:
             row = {"participant": who, "block": when, "turn": order.index(when) + 1 if when in order else ""}
             for name in study.forms:
-                path = os.path.join(place, f"{when}_{name}.json")
+                path = study.answers_file(place, when, name)
                 if os.path.exists(path):
                     with open(path, encoding="utf-8") as file:
                         row |= {k: round(v, 4) for k, v in json.load(file).get("scores", {}).items()}
