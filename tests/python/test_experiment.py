@@ -62,6 +62,33 @@ class Outcomes(unittest.TestCase):
         self.assertEqual([len(p.list_runs()) for p in made], [2 * len(k[1]) for k in outcomes.KNOBS])
 
 
+class Words(unittest.TestCase):
+    """How often the ROV of the shark's task is told its place."""
+
+    def test_words_have_the_rate_that_was_asked_for(self):
+        import shark
+        for control_hz, physics_hz in ((50, 240), (7, 240), (20, 240), (60, 70), (60, 60), (1, 1000)):
+            told, seen = [], []
+
+            class World(dict):
+                time, step, step_s = 0.0, 5, 1.0 / physics_hz
+
+                def tick(self, steps):
+                    self.step += steps
+                    self.time = (self.step - 5) * self.step_s
+            world = World(diver=SimpleNamespace(pose=lambda *_, **__: None), shark=SimpleNamespace(pose=lambda *_, **__: None))
+            flight = shark._Flight.__new__(shark._Flight)
+            flight.s = {k: v.default for k, v in shark.SETTINGS.items()} | {"control_hz": control_hz, "physics_hz": physics_hz, "seconds": 3.0}
+            flight.world, flight.person, flight.gaze, flight.met_s = world, None, None, 0.0
+            flight._steer = lambda *_: told.append(world.step - 5)
+            flight._see = lambda: seen.append(world.step - 5)
+            flight.fly()
+            self.assertEqual(told, [math.ceil(i * physics_hz / control_hz - 1e-6) for i in range(3 * control_hz)], (control_hz, physics_hz))
+            self.assertLessEqual(max(np.diff([0, *seen])), physics_hz / 20, (control_hz, physics_hz))
+        with self.assertRaisesRegex(scenario.Refused, "control_hz: found 100; accepted: at most physics_hz, 60"):
+            shark.check(flight.s | {"control_hz": 100.0, "physics_hz": 60})
+
+
 class Sonar(unittest.TestCase):
     def test_the_sharks_sonar_is_ahead_of_the_rov_in_which_it_would_hear_nothing(self):
         import shark_scene
@@ -635,13 +662,14 @@ class Tasks(unittest.TestCase):
             self.made(**more)
         self.assertNotIn("\n", str(caught.exception))
 
-    def run_of(self, plan, bpm=10.0):
+    def run_of(self, plan, bpm=10.0, hz=20):
         """Its measures in a world that has a diver's body alone."""
-        world = SimpleNamespace(time=0.0, step_s=0.05, agents={"rov": None, "diver": None}, close=lambda: None)
+        world = SimpleNamespace(time=0.0, step=0, step_s=1.0 / hz, agents={"rov": None, "diver": None}, close=lambda: None)
         seen = {"diver/motion": SimpleNamespace(breath_bpm=bpm, heart_bpm=6 * bpm)}
 
         def tick(steps):
-            world.time += steps * world.step_s
+            world.step += steps
+            world.time = world.step * world.step_s
             return seen
         world.observe, world.tick = lambda: seen, tick
         world.truth = lambda name: SimpleNamespace(position=np.array([2.0 * (name == "rov"), 0.0, -10.0]))
@@ -652,6 +680,19 @@ class Tasks(unittest.TestCase):
         stages = "".join(f'[[stages]]\nname = "{n}"\nuntil = "stage_time > 0.99"\nheld_s = {held}\n' for n, held in (("a", 2.0), ("b", 0.5)))
         measures = self.run_of(self.made(stages=stages))
         self.assertEqual([round(measures[k], 6) for k in ("a_s", "b_s", "time_s")], [3.0, 1.5, 4.5])
+
+    def test_calls_have_the_rate_that_was_asked_for(self):
+        stages = '[[stages]]\nname = "work"\nuntil = "time > 99"\n[[measures]]\nname = "calls"\nof = "n"\nstatistic = "last"\n' \
+                 '[[measures]]\nname = "all_s"\nof = "n > 0"\nstatistic = "duration"\n'
+        player = 'self.n = getattr(self, "n", 0) + 1\n        return {"n": self.n}'
+        for asked_hz, physics_hz in ((100, 240), (7, 240), (20, 240), (0.3, 60), (60, 60), (240, 240), (100 / 3, 1000)):
+            plan = self.made(task=f'tells = ["n"]\ncontrol_hz = {asked_hz}\nseconds = 40.0', stages=stages, player=player)
+            told = self.run_of(plan, hz=physics_hz)
+            self.assertEqual(told["calls"], math.ceil(40 * asked_hz - 1e-6), (asked_hz, physics_hz))
+            self.assertAlmostEqual(told["all_s"], told["calls"] / asked_hz, 9)
+        plan = self.made(task='control_hz = 241', stages=stages.replace('"n', '"time'))
+        with self.assertRaisesRegex(scenario.Failed, r"own.toml: task.control_hz: found 241; accepted: at most 240, the rate of the physics"):
+            self.run_of(plan, hz=240)
 
     def test_what_is_not_known_says_neither_yes_nor_no(self):
         import formulas

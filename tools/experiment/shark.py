@@ -14,6 +14,7 @@ import numpy as np
 import looking
 import shark_person
 from detector import model_of
+from instants import Instants
 from rotations import matrix
 from scenario import Failed, Refused, Setting, draw
 from shark_figures import figures, notes  # noqa: F401: of the kind
@@ -130,18 +131,18 @@ class _Flight:
             return
         if not self.person:
             world["diver"].pose(DIVER)
-        every = max(1, int(round(s["physics_hz"] / s["control_hz"])))
-        # Told control_hz times a second; judged at least 20 times a second.
-        part, next_told = min(every, max(1, int(round(s["physics_hz"] / 20)))), 0
+        # Told control_hz times a second; judged then, and at least 20 times a second.
+        words, begun, part = Instants("control_hz", s["control_hz"], world.step_s), world.step, s["physics_hz"] // 20
         while self._time() < s["seconds"] - 1e-9:
             time = self._time()
             shark, speed = shark_at(s, time)
             self._show(shark, speed)
             self._look(time, shark)
-            if world.step >= next_told:
-                next_told = world.step + every
+            step = world.step - begun
+            if step >= words.step:
                 self._steer(time, shark, speed)
-            world.tick(part)
+                words.take(step)
+            world.tick(min(part, words.step - step))
             if self.person and not self._attend():
                 raise Failed("the person's dive ended before the run")
             if self._see():
@@ -285,7 +286,10 @@ def files(settings):
 
 
 def check(settings):
-    """Refuses a detector that is not there, cannot look or knows no shark, before anything runs."""
+    """Refuses what cannot run, before anything does: more words a second than steps, a detector that is not there, cannot look or knows
+    no shark."""
+    if settings["control_hz"] > settings["physics_hz"]:
+        raise Refused(f"control_hz: found {settings['control_hz']:g}; accepted: at most physics_hz, {settings['physics_hz']}")
     if settings["detector"] == "assumed":
         return
     path = model_of(settings["detector"])

@@ -2,7 +2,8 @@
 README.md lists its keys.
 
 The controller is a Python file with a class Controller: __init__(self, world, settings, seed) and
-act(self, observations, stage), called control_hz times a second. It returns a dict of the numbers that it says to the player, or
+act(self, observations, stage), called control_hz times a second: each time at the first step of the physics that is not before it is
+due, so that calls may be a step more or less apart where control_hz does not divide the physics' rate; world.time is exact. It returns a dict of the numbers that it says to the player, or
 None. A player, a class Player of the same form, plays people and props by rules and judges, so that controllers can be compared:
 its act has a third argument, what the controller said last, and is called first; formulas may name the numbers that it returns.
 The controller has these as self.told, and the player itself as self.player.
@@ -18,6 +19,7 @@ import numpy as np
 import files_read
 import task_figures
 from formulas import says_yes
+from instants import Instants
 from scenario import Failed, Refused
 from task_file import TaskFile, check_class, check_participants
 
@@ -150,18 +152,19 @@ class Task(TaskFile):
         controller = _controller(path)(world, settings, seed) if path else Null(world, settings, seed)
         controller.player = player
         fixed = {k: np.array(v) for k, v in self.places.items()}
-        every = max(1, round(1.0 / (self.control_hz * world.step_s)))
+        calls, begun = Instants(f"{self.path}: task.control_hz", self.control_hz, world.step_s), world.step
         course, observations, told, said = _Course(self), world.observe(), {}, {}
         while world.time < self.seconds - 1e-9 and not course.is_over():
             told = _told(self.player, player.act(observations, course.name(), said), self.tells) if player else {}
             controller.told = dict(told)
             said = _told(path, controller.act(observations, course.name()), self.says)
-            observations = world.tick(every)
+            calls.take(world.step - begun)
+            observations = world.tick(calls.step - (world.step - begun))
             moment = Moment(world, fixed, {**settings, **told, "time": world.time, "stage_time": world.time - course.begun}, observations)
             for name, formula in self.numbers:
                 moment.define(name, formula)
             course.see(moment, world.time)
-        measures = course.measures(every * world.step_s)
+        measures = course.measures(1.0 / self.control_hz)
         world.close()
         keep = slice(None, None, max(1, len(course.series["t"]) // 400))
         return measures, {k: v[keep] for k, v in course.series.items()}
