@@ -141,6 +141,24 @@ Ability ability_of(const PhysicsHuman& human, const PhysicsState& before) {
           state.strength,  state.cold.shiver_w,        state.slack};
 }
 
+namespace {
+
+// Whether another breathes from that regulator; of two who took it in the same step the first.
+bool taken(std::span<const PhysicsHuman> humans, std::size_t index, bool has_it,
+           const PhysicsState& before) {
+  const PhysicsRegulator& wanted = *humans[index].regulator;
+  const std::size_t rivals = has_it ? index : humans.size();
+  for (std::size_t k = 0; k < rivals; ++k) {
+    const auto& other = humans[k].regulator;
+    if (k != index && other && other->donor == wanted.donor &&
+        other->donor_tank == wanted.donor_tank && before.regulators()[other->place].donor != 0)
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 std::optional<diver::BorrowedTank> borrow(std::span<const PhysicsHuman> humans, std::size_t index,
                                           const Ability& able, const PhysicsInputs& inputs,
                                           const PhysicsState& before, double dt_s,
@@ -156,8 +174,9 @@ std::optional<diver::BorrowedTank> borrow(std::span<const PhysicsHuman> humans, 
                      (choice == SupplyChoice::kByItself &&
                       (state.donor != 0 || all_empty(human, before.humans()[index])));
   if (state.donor != 0 && !reaches) ++state.torn;
-  if (!wants || !reaches) state.donor = 0;
-  const bool reaches_for = wants && reaches && state.donor == 0 && able.conscious;
+  const bool another = taken(humans, index, state.donor != 0, before);
+  if (!wants || !reaches || another) state.donor = 0;
+  const bool reaches_for = wants && reaches && !another && state.donor == 0 && able.conscious;
   state.wanted_s = reaches_for ? state.wanted_s + dt_s : 0.0;
   // A client's hands are as quick as the client.
   const double takes_s = choice == SupplyChoice::kDonor ? 0.0 : regulator.reaction_s * able.slowing;

@@ -202,7 +202,7 @@ struct ThingState {
 };
 struct GripState {
   std::uint64_t held = 0;  // number of the object that it holds, from 1 on; 0: none
-  double load_n = 0.0;     // in the last step
+  double load_n = 0.0;     // of late (things.cpp)
   std::uint64_t grabs = 0, drops = 0;
 
   static void fields(auto&& field, auto& self) {

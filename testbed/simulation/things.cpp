@@ -11,6 +11,10 @@
 namespace neritic::testbed {
 namespace {
 
+// Jaws and fingers give way for so long: a jolt counts by what it is over that time, whatever the
+// step.
+constexpr double kGives_s = 0.02;
+
 constexpr double kSphereAdded = 0.5;  // of the displaced water (Lamb 1932, art. 92)
 constexpr double kLeastMoving_kg = 1e-3;
 // How far a hand reaches from the shoulder's side of the hips, of the height: an arm of 0.44 and a
@@ -212,7 +216,8 @@ void Things::pull(std::size_t index, std::span<const PhysicsHuman> humans, const
   const Vec3 impulse = sim::grip_impulse(body.inverse_mass, body.free, held);
   sim::hold(body.inverse_mass, impulse, dt_s, body.free, held);
   object.motion.velocity_m_s = held.velocity_m_s;
-  after.grips()[state.holder - 1].load_n = glm::length(impulse) / dt_s;
+  double& load_n = after.grips()[state.holder - 1].load_n;
+  load_n += (glm::length(impulse) / dt_s - load_n) * -std::expm1(-dt_s / kGives_s);
 }
 
 void Things::finish(std::span<const PhysicsHuman> humans, const sim::StaticWorld& solid,

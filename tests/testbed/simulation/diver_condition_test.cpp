@@ -229,6 +229,39 @@ TEST(SceneRegulator, OneOutOfGasBreathesTheDonorsTankAndTheCountsAgree) {
               0.01);
 }
 
+TEST(SceneRegulator, OneRegulatorFeedsOneDiver) {
+  const auto lows = [](const char* name, double x_m) {
+    return named(diver_text(std::string(kProne) + "position_m = [" + std::to_string(x_m) +
+                            ", -12, 0]\nregulator = { donor = \"buddy\", hose_m = 3, "
+                            "reaction_s = 0 }\n"),
+                 name);
+  };
+  TestDive dive =
+      dive_of(kStillWater + lows("left", -0.9) + lows("right", 0.9) +
+              named(diver_text(std::string(kProne) + "position_m = [0, -12, 0.5]\n"), "buddy"));
+  const auto ask = [&](const char* stream, SupplyChoice choice) {
+    EXPECT_TRUE(send(*dive.simulation, dive.world->streams().find(stream).value(),
+                     RegulatorUse{choice, FlowChoice::kHolds}));
+  };
+  const auto donors = [&] {
+    return std::pair(dive.state().regulators()[0].donor, dive.state().regulators()[1].donor);
+  };
+  // Both in one step: the first has it.
+  ask("left/regulator", SupplyChoice::kDonor);
+  ask("right/regulator", SupplyChoice::kDonor);
+  dive.run(5.0);
+  EXPECT_EQ(donors(), std::pair(std::uint64_t{3}, std::uint64_t{0}));
+  const double taken = dive.state().regulators()[1].taken_moles;
+  dive.run(5.0);
+  EXPECT_EQ(dive.state().regulators()[1].taken_moles, taken);
+  // Let go, it goes to the other, who keeps it.
+  ask("left/regulator", SupplyChoice::kOwn);
+  dive.run(1.0);
+  ask("left/regulator", SupplyChoice::kDonor);
+  dive.run(5.0);
+  EXPECT_EQ(donors(), std::pair(std::uint64_t{0}, std::uint64_t{3}));
+}
+
 TEST(SceneRegulator, BeyondTheHoseNothingIsShared) {
   Buddies two(4.0);
   two.dive.run(30.0);
