@@ -351,6 +351,47 @@ struct ComputerReading {
   }
 };
 
+// How far a value of a person's state can be relied on.
+enum class ValueQuality : std::uint64_t {
+  kMissing,   // not known; it is 0
+  kLost,      // its source was never heard or fell silent: what the model of a diver has instead
+  kModelled,  // no source is named: of the model
+  kPoor,      // measured, but not to be relied on: of a poor signal, or between two things
+  kGood,      // measured
+};
+
+// The state of a person that a robot acts on, as the published system feeds it to its ROV: gaze,
+// breath, heart rate variability, ascent rate, gas, depth; each value with its quality. Depth,
+// ascent and gas are those of the diver's computer and gauge.
+struct HumanReading {
+  std::uint64_t gaze_object =
+      0;                         // number of the scene's object, from 1 on; 0: nothing is looked at
+  double gaze_off_rad = 0.0;     // of the line of sight from it, or from the nearest thing
+  double gaze_distance_m = 0.0;  // from the eyes to that
+  double breath_bpm = 0.0, heart_bpm = 0.0;
+  double sdnn_ms = 0.0, rmssd_ms = 0.0;  // of the heart's last five minutes
+  double depth_m = 0.0, ascent_m_min = 0.0, gas_pa = 0.0;
+  ValueQuality gaze_quality = ValueQuality::kMissing, breath_quality = ValueQuality::kMissing,
+               heart_quality = ValueQuality::kMissing, variability_quality = ValueQuality::kMissing;
+
+  static void fields(auto&& field, auto& self) {
+    field("gaze_object", self.gaze_object);
+    field("gaze_off_rad", self.gaze_off_rad);
+    field("gaze_distance_m", self.gaze_distance_m);
+    field("breath_bpm", self.breath_bpm);
+    field("heart_bpm", self.heart_bpm);
+    field("sdnn_ms", self.sdnn_ms);
+    field("rmssd_ms", self.rmssd_ms);
+    field("depth_m", self.depth_m);
+    field("ascent_m_min", self.ascent_m_min);
+    field("gas_pa", self.gas_pa);
+    field("gaze_quality", self.gaze_quality);
+    field("breath_quality", self.breath_quality);
+    field("heart_quality", self.heart_quality);
+    field("variability_quality", self.variability_quality);
+  }
+};
+
 // The condition of a diver whose scene names it (diver/condition.hpp). A model, not a measurement.
 struct ConditionReading {
   double alveolar_mmhg = 0.0, saturation = 0.0;  // of oxygen
@@ -387,7 +428,7 @@ struct GripReading {
                             // own, from 1 on; 0: nothing
   Vec3 position_m{0.0};     // of the grip
   Vec3 velocity_m_s{0.0};   // over ground
-  double load_n = 0.0;      // that what it holds pulls with
+  double load_n = 0.0;      // that what it holds pulls with, over some 20 ms
   double nearest_m = -1.0;  // from the grip to the nearest thing
   std::uint64_t grabs = 0, drops = 0;  // so far; a thing taken over is no drop
 

@@ -17,7 +17,7 @@ constexpr std::array<std::string_view, kPayloadKinds> kKindNames{
     "heart",  "gas",       "wrench",     "setpoint", "velocity", "thrusters", "fault",
     "pose",   "event",     "imu",        "dvl",      "pressure", "compass",   "altimeter",
     "usbl",   "collision", "motion",     "computer", "modem",    "send",      "condition",
-    "supply", "regulator", "gripper",    "grip",     "tether",   "battery"};
+    "supply", "regulator", "gripper",    "grip",     "tether",   "battery",   "human"};
 
 template <std::size_t... index>
 Payload make_payload(std::size_t kind, std::index_sequence<index...>) {

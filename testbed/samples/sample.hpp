@@ -43,7 +43,7 @@ using Payload =
                  rov::PressureReading, CompassReading, rov::AltimeterReading, rov::UsblReading,
                  CollisionReading, DiverMotion, ComputerReading, ModemReading, ModemSend,
                  ConditionReading, SupplyReading, RegulatorUse, GripReading, GripUse, TetherReading,
-                 BatteryReading>;
+                 BatteryReading, HumanReading>;
 
 enum class PayloadKind : std::uint32_t {
   kBodyJoints,
@@ -80,9 +80,10 @@ enum class PayloadKind : std::uint32_t {
   kGrip,
   kTether,
   kBattery,
+  kHuman,
 };
 inline constexpr std::size_t kPayloadKinds = std::variant_size_v<Payload>;
-static_assert(kPayloadKinds == static_cast<std::size_t>(PayloadKind::kBattery) + 1);
+static_assert(kPayloadKinds == static_cast<std::size_t>(PayloadKind::kHuman) + 1);
 
 // The last part of a stream's name: "joints", "imu".
 std::string_view name_of(PayloadKind kind);

@@ -52,6 +52,9 @@ std::string_view words_of(PayloadKind kind) {
       return "a battery; voltage and current at its terminals, charge of 1, time left at this "
              "power; "
              "empty 1: no thruster has power";
+    case PayloadKind::kHuman:
+      return "a person's state; qualities: 0 missing, 1 source lost, 2 modelled, 3 poor, 4 good; "
+             "gaze_object: an object's number from 1 on, 0 nothing";
     case PayloadKind::kPressure:
       return "absolute pressure, and the depth that the sensor makes of it";
     case PayloadKind::kCompass:

@@ -24,7 +24,7 @@ void StreamTable::add_diver(const std::string& name, ModemSort modem,
   const auto owner = static_cast<std::uint32_t>(first_[0].size());
   std::vector<PayloadKind> kinds{kBodyJoints, kHandJoints, kHandPoses, kHeadPose, kGaze,
                                  kButtons,    kBreath,     kHeart,     kGas,      kEvent,
-                                 kMotion,     kComputer,   kCollision};
+                                 kMotion,     kComputer,   kCollision, kHuman};
   kinds.insert(kinds.end(), named.begin(), named.end());
   add(OwnerSort::kDiver, owner, name, std::move(kinds), modem);
 }

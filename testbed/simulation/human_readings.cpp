@@ -15,6 +15,21 @@ double finite_or_no_end(double minutes) {
   return std::isfinite(minutes) ? minutes : kNoEnd;
 }
 
+// Of a value that an instrument may measure, and else the model of a diver has.
+ValueQuality quality_of(const GroupState& group, bool measured) {
+  if (measured) return ValueQuality::kGood;
+  switch (group.phase) {
+    case GroupPhase::kChosen:
+      return ValueQuality::kModelled;
+    case GroupPhase::kWaiting:
+    case GroupPhase::kLost:
+      return ValueQuality::kLost;
+    case GroupPhase::kLive:
+      return ValueQuality::kPoor;  // it speaks, but not so that its words could be used
+  }
+  return ValueQuality::kMissing;
+}
+
 }  // namespace
 
 diver::AscentGas gas_for_ascent(const PhysicsHuman& human, const HumanPhysics& state) {
@@ -40,6 +55,35 @@ DiverMotion motion_reading(const PhysicsHuman& human, const HumanPhysics& state)
           .lungs_m3 = state.human.life.lungs.volume_m3,
           .tank = state.human.held.tank,
           .buttons = state.human.held.buttons};
+}
+
+HumanReading human_reading(const PhysicsHuman& human, const HumanPhysics& state,
+                           const GazeTargets::Seen& seen) {
+  const diver::VitalState& vitals = state.human.life.vitals;
+  const diver::HeartState& heart = state.human.held.instruments.heart;
+  const auto quality = [&](DiverGroup group, std::uint64_t bit) {
+    return quality_of(state.groups[static_cast<std::size_t>(group)], (vitals.measured & bit) != 0);
+  };
+  HumanReading out{.gaze_object = seen.object,
+                   .gaze_off_rad = seen.off_rad,
+                   .gaze_distance_m = seen.distance_m,
+                   .breath_bpm = vitals.breath_bpm,
+                   .heart_bpm = vitals.heart_bpm,
+                   .depth_m = state.human.life.computer.last.depth_m,
+                   .ascent_m_min = gas_for_ascent(human, state).view.ascent_m_min,
+                   .gas_pa = diver::read_gas(human.body, state.human).tank_pa,
+                   .gaze_quality = quality(DiverGroup::kGaze, diver::kGazeMeasured),
+                   .breath_quality = quality(DiverGroup::kBreath, diver::kBreathMeasured),
+                   .heart_quality = quality(DiverGroup::kHeart, diver::kHeartMeasured)};
+  if (out.gaze_quality == ValueQuality::kGood && seen.doubtful)
+    out.gaze_quality = ValueQuality::kPoor;
+  // A model's heart beats without variation.
+  if ((vitals.measured & diver::kHeartMeasured) != 0 && heart.over_five_minutes.pairs > 0) {
+    out.sdnn_ms = heart.over_five_minutes.sdnn_ms;
+    out.rmssd_ms = heart.over_five_minutes.rmssd_ms;
+    out.variability_quality = ValueQuality::kGood;
+  }
+  return out;
 }
 
 ComputerReading computer_reading(const PhysicsHuman& human, const HumanPhysics& state) {

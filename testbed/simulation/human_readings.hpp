@@ -3,6 +3,7 @@
 #pragma once
 
 #include "diver/ascent_gas.hpp"
+#include "testbed/simulation/gaze_targets.hpp"
 #include "testbed/simulation/human_world.hpp"
 
 namespace neritic::testbed {
@@ -11,6 +12,8 @@ namespace neritic::testbed {
 diver::AscentGas gas_for_ascent(const PhysicsHuman& human, const HumanPhysics& state);
 
 DiverMotion motion_reading(const PhysicsHuman& human, const HumanPhysics& state);
+HumanReading human_reading(const PhysicsHuman& human, const HumanPhysics& state,
+                           const GazeTargets::Seen& seen);
 ComputerReading computer_reading(const PhysicsHuman& human, const HumanPhysics& state);
 
 }  // namespace neritic::testbed

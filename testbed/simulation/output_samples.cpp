@@ -26,6 +26,7 @@ bool leaves(const Stream& stream) {
     case PayloadKind::kGripper:
     case PayloadKind::kTether:
     case PayloadKind::kBattery:
+    case PayloadKind::kHuman:
       return true;
     default:
       return false;
@@ -93,6 +94,8 @@ OutputSamples::Made OutputSamples::made(const Stream& stream,
     return every(std::max(diver::kComputerSample_s, world_.step_s()), snapshot.step);
   if (stream.kind == PayloadKind::kBattery)
     return every(std::max(1.0 / kBattery_hz, world_.step_s()), snapshot.step);
+  if (stream.kind == PayloadKind::kHuman)
+    return every(std::max(1.0 / kHuman_hz, world_.step_s()), snapshot.step);
   if (stream.kind == PayloadKind::kCollision) {
     const PhysicsState& state = snapshot.state;
     const ContactState& contact = stream.sort == OwnerSort::kVehicle
@@ -138,7 +141,8 @@ void OutputSamples::add_reports(Output& output, const Stream& stream,
   output.count = all;
 }
 
-Payload OutputSamples::payload(const Stream& stream, const PhysicsState& state) {
+Payload OutputSamples::payload(const Stream& stream, const sim::Snapshot<PhysicsState>& snapshot) {
+  const PhysicsState& state = snapshot.state;
   if (const auto modem = ranging_of(stream)) return state.modem_tasks()[*modem].fix.value;
   if (stream.kind == PayloadKind::kCollision)
     return collisions_.find(stream.sort, stream.owner, state);
@@ -157,6 +161,8 @@ Payload OutputSamples::payload(const Stream& stream, const PhysicsState& state) 
     const PhysicsHuman& human = world_.humans()[stream.owner];
     const HumanPhysics& now = state.humans()[stream.owner];
     if (stream.kind == PayloadKind::kMotion) return motion_reading(human, now);
+    if (stream.kind == PayloadKind::kHuman)
+      return human_reading(human, now, world_.looks_at(state, stream.owner, snapshot.time_s));
     if (stream.kind == PayloadKind::kCondition) return condition_reading(human, state, now);
     if (stream.kind == PayloadKind::kSupply)
       return supply_reading(world_.humans(), stream.owner, state);
@@ -188,7 +194,7 @@ std::span<const Sample> OutputSamples::of(const sim::Snapshot<PhysicsState>& sna
     const TimeNs age_ns = to_ns(snapshot.time_s - now.time_s);
     samples_.push_back(
         {{output.stream, kSimulation, now.count - 1, snapshot.host_ns - age_ns, snapshot.host_ns},
-         payload(stream, snapshot.state)});
+         payload(stream, snapshot)});
   }
   begun_ = true;
   return samples_;

@@ -18,6 +18,7 @@ namespace neritic::testbed {
 // with each step in which the body touches something.
 inline constexpr double kDiverMotion_hz = 60.0;
 inline constexpr double kBattery_hz = 1.0;
+inline constexpr double kHuman_hz = 10.0;
 
 class OutputSamples {
  public:
@@ -49,7 +50,7 @@ class OutputSamples {
   void add_reports(Output& output, const Stream& stream,
                    const sim::Snapshot<PhysicsState>& snapshot);
   Made every(double period_s, std::uint64_t step) const;
-  Payload payload(const Stream& stream, const PhysicsState& state);
+  Payload payload(const Stream& stream, const sim::Snapshot<PhysicsState>& snapshot);
 
   const PhysicsWorld& world_;
   CollisionFinder collisions_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diver/reach.hpp"
 #include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "rov/frames.hpp"
@@ -97,6 +98,7 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
   if (scene.water && scene.water->column) world->layers_.emplace(*scene.water->column);
   NERITIC_TRY(world->modems_, Modems::create(scene, world->movers_));
   world->followed_ = followed_points(scene, world->movers_);
+  if (!world->humans_.empty()) world->gaze_targets_ = GazeTargets(scene, world->movers_);
   for (const PhysicsModem& modem : world->modems_.all())
     if (modem.sort == OwnerSort::kVehicle && modem.ranging &&
         world->vehicles_[modem.owner].file.sensors.usbl)
@@ -309,6 +311,17 @@ std::unique_ptr<PhysicsSimulation> PhysicsWorld::simulation(sim::SimulationOptio
 double PhysicsWorld::wash_m_s(const PhysicsState& state, const Vec3& place_m) const {
   if (!washes_) return 0.0;
   return glm::length(wash_ned_m_s(vehicles_, state, rov::ned_from_world(place_m), water_kg_m3_));
+}
+
+GazeTargets::Seen PhysicsWorld::looks_at(const PhysicsState& state, std::size_t human,
+                                         double time_s) const {
+  const PhysicsHuman& diver = humans_[human];
+  const diver::HumanState& now = state.humans()[human].human;
+  const diver::Posture posture = diver::posture_of(diver.body, now.limbs.rotation, now.limbs.rate);
+  const Vec3 eyes_ned_m = now.root.position_ned_m +
+                          now.root.attitude * diver::body_from_eyes(diver.body, posture).position_m;
+  return gaze_targets_.look(state, solid_, diver.object, rov::world_from_ned(eyes_ned_m),
+                            rov::world_from_ned(now.life.vitals.gaze_ned), time_s);
 }
 
 }  // namespace neritic::testbed

@@ -15,6 +15,7 @@
 #include "testbed/simulation/body_step.hpp"
 #include "testbed/simulation/diver_condition.hpp"
 #include "testbed/simulation/followed_points.hpp"
+#include "testbed/simulation/gaze_targets.hpp"
 #include "testbed/simulation/human_world.hpp"
 #include "testbed/simulation/mission.hpp"
 #include "testbed/simulation/modems.hpp"
@@ -140,8 +141,11 @@ class PhysicsWorld {
   Vec3 current_ned_m_s(const Vec3& position_ned_m, double time_s) const;
   // The water's velocity, with waves that move bodies, and its head; no accelerations.
   diver::WaterFlow water_ned(const Vec3& position_ned_m, double time_s) const;
-  // How fast the thrusters of vehicles that name their wash drive the water at a place of the world.
+  // How fast the thrusters of vehicles that name their wash drive the water at a place of the
+  // world.
   double wash_m_s(const PhysicsState& state, const Vec3& place_m) const;
+  // What a diver looks at.
+  GazeTargets::Seen looks_at(const PhysicsState& state, std::size_t human, double time_s) const;
   // The newest readings of a vehicle's sensors; null where it has none.
   const rov::SensorReadings* readings(const PhysicsState& state, std::size_t vehicle) const;
   // The battery of a vehicle; null where its file names none.
@@ -229,6 +233,7 @@ class PhysicsWorld {
   PhysicsInputs start_inputs_;
   Modems modems_;
   std::vector<FollowedPoint> followed_;
+  GazeTargets gaze_targets_;
   Things things_;
   Tethers tethers_;
   double water_kg_m3_ = 1028.0;

@@ -413,6 +413,23 @@ void describe(Io& io, auto& p, const BatteryReading*) {
   io.number("empty", p.empty);
 }
 template <class Io>
+void describe(Io& io, auto& p, const HumanReading*) {
+  io.number("gaze_object", p.gaze_object);
+  io.number("gaze_off", p.gaze_off_rad);
+  io.number("gaze_distance_m", p.gaze_distance_m);
+  io.number("breath_bpm", p.breath_bpm);
+  io.number("heart_bpm", p.heart_bpm);
+  io.number("sdnn_ms", p.sdnn_ms);
+  io.number("rmssd_ms", p.rmssd_ms);
+  io.number("depth_m", p.depth_m);
+  io.number("ascent_m_min", p.ascent_m_min);
+  io.number("gas_pa", p.gas_pa);
+  io.choice("gaze_quality", p.gaze_quality, ValueQuality::kGood);
+  io.choice("breath_quality", p.breath_quality, ValueQuality::kGood);
+  io.choice("heart_quality", p.heart_quality, ValueQuality::kGood);
+  io.choice("variability_quality", p.variability_quality, ValueQuality::kGood);
+}
+template <class Io>
 void describe(Io& io, auto& p, const ConditionReading*) {
   io.number("alveolar_mmhg", p.alveolar_mmhg);
   io.number("saturation", p.saturation);
