@@ -85,9 +85,7 @@ ConditionState rested(const ConditionSettings& settings, const ConditionInputs& 
   ConditionState state;
   if ((settings.effects & kHypoxia) != 0) state.hypoxia = rested(in.breath);
   if ((settings.effects & kCold) != 0) {
-    const double tissue = tissue_resistance(state.cold.core_c),
-                 suit = suit_resistance(settings.cold, in.heat);
-    state.cold.skin_c = std::lerp(settings.cold.water_c, state.cold.core_c, suit / (tissue + suit));
+    state.cold.skin_c = skin_temperature_c(settings.cold, in.heat, state.cold);
   }
   return state;
 }

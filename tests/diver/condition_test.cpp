@@ -92,38 +92,67 @@ ColdSettings bare(double water_c) {
   return {.water_c = water_c, .mass_kg = 75.0, .height_m = 1.78, .suit_m = 0.0};
 }
 
-TEST(Cold, WithoutShiveringItIsTheExponentialOfItsResistances) {
+TEST(Cold, WithoutShiveringItIsTheSolutionOfItsTwoEquations) {
   // Vessels wide and skin warm all the time.
   const ColdSettings settings = bare(36.0);
   const ColdInputs in{.heat_w = 230.0, .ventilation_l_min = 10.0};
-  ColdState once, often;
-  once.core_c = often.core_c = 38.5;
+  ColdState once{.core_c = 38.5, .shell_c = 37.5, .skin_c = 36.5};
+  ColdState often = once;
   step_cold(settings, in, 1800.0, once);
   for (int i = 0; i < 1800; ++i) step_cold(settings, in, 1.0, often);
-  const double resistance = 0.03 + 1.0 / 230.0,
-               area = 0.202 * std::pow(75.0, 0.425) * std::pow(1.78, 0.725);
+  // By small steps of the equations themselves.
+  const double area = 0.202 * std::pow(75.0, 0.425) * std::pow(1.78, 0.725);
   const double breath_w = 10e-3 / 60.0 * (1.2 * 1005.0 * (34.0 - 36.0) + 2.43e6 * 0.0376);
-  const double end_c = 36.0 + (230.0 - breath_w) * resistance / area;
-  const double heat = 3470.0 * 75.0 * (0.64 + 0.36 / 230.0 / resistance);
-  const double core_c = end_c + (38.5 - end_c) * std::exp(-1800.0 * area / resistance / heat);
-  EXPECT_NEAR(once.core_c, core_c, 1e-9);
-  EXPECT_NEAR(often.core_c, core_c, 1e-9);
+  double core_c = 38.5, shell_c = 37.5;
+  constexpr double kStep_s = 0.01;
+  for (int i = 0; i < 180000; ++i) {
+    const double inner_w = (core_c - shell_c) * area / (0.3 * 0.03);
+    const double outer_w = (shell_c - 36.0) * area / (0.7 * 0.03 + 1.0 / 230.0);
+    core_c += kStep_s * (230.0 - breath_w - inner_w) / (3470.0 * 75.0 * 0.75);
+    shell_c += kStep_s * (inner_w - outer_w) / (3470.0 * 75.0 * 0.25);
+  }
+  EXPECT_NEAR(once.core_c, core_c, 1e-5);
+  EXPECT_NEAR(once.shell_c, shell_c, 1e-5);
+  EXPECT_NEAR(often.core_c, once.core_c, 1e-9);
+  EXPECT_NEAR(often.shell_c, once.shell_c, 1e-9);
   EXPECT_EQ(often.shiver_w, 0.0);
+  // Any step ends where it ends.
+  step_cold(settings, in, 1e9, once);
+  EXPECT_NEAR(once.shell_c, 36.0 + (230.0 - breath_w) / area * (0.7 * 0.03 + 1.0 / 230.0), 1e-9);
 }
 
+// Hayward et al. 1975: for 15 minutes the core stays, then it cools by 0.0785 - 0.0034 T a minute.
 TEST(Cold, PeopleInColdWaterCoolAsMeasured) {
-  // Hayward et al. 1975: minutes to 30 C are 15 + 7.2 / (0.0785 - 0.0034 T).
   for (const double water_c : {5.0, 10.0, 15.0}) {
+    const double a_minute = 0.0785 - 0.0034 * water_c;
     ColdState state;
     double minutes = 0.0;
     while (state.core_c > 30.0 && minutes < 2000.0) {
       step_cold(bare(water_c), {.heat_w = 122.0, .ventilation_l_min = 9.0}, 60.0, state);
       minutes += 1.0;
+      if (minutes == 15.0 || minutes == 30.0 || minutes == 60.0)
+        EXPECT_NEAR(state.core_c, 37.0 - a_minute * (minutes - 15.0), 0.3)
+            << water_c << " C, " << minutes << " min";
     }
-    const double measured = 15.0 + 7.2 / (0.0785 - 0.0034 * water_c);
-    EXPECT_GT(minutes, measured / 1.6) << water_c;
-    EXPECT_LT(minutes, measured * 1.6) << water_c;
+    const double measured = 15.0 + 7.0 / a_minute;
+    EXPECT_GT(minutes, measured / 1.2) << water_c;
+    EXPECT_LT(minutes, measured * 1.2) << water_c;
   }
+}
+
+TEST(Cold, AShortDiveInASuitHardlyCoolsTheCore) {
+  const ColdSettings suit{.water_c = 4.0};
+  ColdState state;
+  for (int i = 0; i < 900; ++i)
+    step_cold(suit,
+              {.heat_w = 200.0,
+               .ventilation_l_min = 15.0,
+               .gas_density_kg_m3 = 6.6,
+               .ambient_pa = 5.5 * 101325.0,
+               .speed_m_s = 0.2},
+              1.0, state);
+  EXPECT_GT(state.core_c, 36.6);
+  EXPECT_LT(state.skin_c, 25.0);
 }
 
 TEST(Cold, ASuitKeepsWarmLessSoDeeper) {
