@@ -8,6 +8,7 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/refusal.hpp"
+#include "engine/core/source_name.hpp"
 
 namespace neritic::net {
 namespace {
@@ -72,8 +73,10 @@ bool is_key(std::string_view text) {
 
 Status make_keys(const fs::path& folder, const std::string& client) {
   const fs::path clients = folder / "clients", of_client = clients / (client + ".public");
-  if (!client.empty() && (!is_word(client) || client == "server"))
-    return refusal("--client", "\"" + client + "\"", "letters, digits, - and _, not server");
+  if (!client.empty() && (!is_word(client) || !names_a_source(client) || client == "server"))
+    return refusal(
+        "--client", "'" + client + "'",
+        "letters, digits, - and _, but autopilot, nobody, recording, server, simulation");
   // A link that leads nowhere or round in a loop is there too: nothing is written through it.
   const auto there = [](const fs::path& path) {
     std::error_code error;
@@ -123,6 +126,8 @@ Result<ServerKeys> read_server_keys(const fs::path& folder) {
     if (at->path().extension() == ".public") files.push_back(at->path());
   std::ranges::sort(files);
   for (const fs::path& file : files) {
+    // A client's samples and commands enter under that name.
+    NERITIC_TRY_STATUS(check_source_name(file.string(), file.stem().string()));
     NERITIC_TRY(const std::string key, read_public(file));
     keys.clients[key] = file.stem().string();
   }

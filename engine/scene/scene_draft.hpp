@@ -153,8 +153,6 @@ std::optional<Grip> read_grip(TableReader& reader, Key key);
 // scene_read_modem.cpp: the table modem, where it is there; [acoustics].
 std::optional<Modem> read_modem(TableReader& reader);
 Result<Acoustics> read_acoustics(const SceneSource& source, const TomlValue& table);
-// Whether a live source may have that name.
-bool names_a_source(const std::string& name);
 // scene_read_sources.cpp: [sources], absent where nullptr, once all objects and their inputs are
 // read.
 Status read_sources(SceneDraft& draft, const SceneSource& source, const TomlValue* sources);

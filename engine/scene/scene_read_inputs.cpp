@@ -1,6 +1,7 @@
 // Reads which source each group of inputs of a vehicle, a diver or another object listens to.
 #include <algorithm>
 
+#include "engine/core/source_name.hpp"
 #include "engine/core/text.hpp"
 #include "engine/scene/scene_draft.hpp"
 #include "engine/scene/scene_reader.hpp"
@@ -9,7 +10,6 @@ namespace neritic::scene {
 namespace {
 
 constexpr Interval kHold{0, 3600, false, false, "seconds"};
-constexpr std::size_t kLongestSourceName = 64;
 
 bool is_live(const std::string& from) {
   return from != "autopilot" && from != "recording" && from != "nobody";
@@ -24,7 +24,7 @@ InputChoice read_choice(TableReader& reader, Key group, KeyList recorded, const 
                   std::ranges::find(recorded, group) != recorded.end() ? "recording, " : "",
                   kLongestSourceName);
   const auto check = [&](TableReader& at, Key key) {
-    if (!names_a_source(choice.from) ||
+    if ((is_live(choice.from) && !names_a_source(choice.from)) ||
         (choice.from == "recording" && std::ranges::find(recorded, group) == recorded.end()))
       at.refuse(key, accepted);
   };
@@ -49,11 +49,6 @@ InputChoice read_choice(TableReader& reader, Key group, KeyList recorded, const 
 }
 
 }  // namespace
-
-bool names_a_source(const std::string& name) {
-  return !name.empty() && name.size() <= kLongestSourceName &&
-         std::ranges::all_of(name, [](char c) { return c > ' ' && c <= '~'; });
-}
 
 std::vector<InputChoice> read_inputs(TableReader& reader, KeyList groups, KeyList recorded,
                                      const std::string& then) {

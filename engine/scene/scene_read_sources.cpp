@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/refusal.hpp"
+#include "engine/core/source_name.hpp"
 #include "engine/core/text.hpp"
 #include "engine/scene/scene_draft.hpp"
 #include "engine/scene/scene_reader.hpp"
@@ -164,11 +165,8 @@ Status read_sources(SceneDraft& draft, const SceneSource& source, const TomlValu
   TableReader table(source, *sources, "sources", names);
   SourceReader reader(draft, table);
   for (const TomlEntry& entry : sources->entries) {
-    if (!names_a_source(entry.key) || entry.key == "autopilot" || entry.key == "recording" ||
-        entry.key == "nobody" || entry.key == "simulation")
-      return refusal(fmt::format("{}: sources.{}", source.place(entry.where), printable(entry.key)),
-                     "such a name",
-                     "up to 64 printable characters, but autopilot, recording, nobody, simulation");
+    NERITIC_TRY_STATUS(
+        check_source_name(fmt::format("{}: sources", source.place(entry.where)), entry.key));
     reader.read(entry);
   }
   return table.status();

@@ -1,5 +1,8 @@
 #include "testbed/samples/inbox.hpp"
 
+#include "engine/core/refusal.hpp"
+#include "engine/core/source_name.hpp"
+
 namespace neritic::testbed {
 namespace {
 
@@ -47,10 +50,12 @@ SampleInbox::SampleInbox(const StreamTable& streams, std::size_t capacity)
   filling_.reserve(2 * capacity);
   draining_.reserve(2 * capacity);
   sources_.reserve(kMaxSources);
-  sources_.push_back({"simulation", kMaxAge_ns, {}, std::vector<Track>(streams.size())});
+  sources_.push_back(
+      {std::string(kSimulationName), kMaxAge_ns, {}, std::vector<Track>(streams.size())});
 }
 
 Result<SourceId> SampleInbox::open(const std::string& name, TimeNs max_age_ns) {
+  NERITIC_TRY_STATUS(check_source_name("source", name));
   const std::lock_guard lock(mutex_);
   for (SourceId id = 0; id < sources_.size(); ++id) {
     Source& source = sources_[id];
@@ -60,8 +65,8 @@ Result<SourceId> SampleInbox::open(const std::string& name, TimeNs max_age_ns) {
     return id;
   }
   if (sources_.size() == kMaxSources)
-    return bad_input("source '{}': {} sources are open; accepted: up to {}", name, sources_.size(),
-                     kMaxSources);
+    return refusal("source: " + name, fmt::format("a new one beside {}", sources_.size() - 1),
+                   fmt::format("up to {}", kMaxSources - 1));
   sources_.push_back({name, max_age_ns, {}, std::vector<Track>(streams_.size())});
   return static_cast<SourceId>(sources_.size() - 1);
 }

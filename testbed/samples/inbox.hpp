@@ -44,8 +44,8 @@ class SampleInbox {
   // Borrows the table.
   SampleInbox(const StreamTable& streams, std::size_t capacity);
 
-  // Any thread. The number under which the source sends. A name that is known gets its number
-  // again, and its sequences start anew: the device was restarted. An Error beyond kMaxSources.
+  // Any thread. The number under which a source sends. A known name gets its number again with its
+  // sequences anew: a restart. An Error beyond kMaxSources and by engine/core/source_name.hpp.
   Result<SourceId> open(const std::string& name, TimeNs max_age_ns = kMaxAge_ns);
 
   // Any thread. Precondition: header.arrived_ns is now, on the clock of header.captured_ns.

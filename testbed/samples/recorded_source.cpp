@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/core/source_name.hpp"
+
 namespace neritic::testbed {
 namespace {
 
@@ -28,6 +30,7 @@ bool RecordedSource::has_samples() const {
 }
 
 Result<SourceId> RecordedSource::open(SampleInbox& inbox, SourceId logged) const {
+  if (log_.sources[logged] == kSimulationName) return kSimulation;
   return inbox.open(log_.sources[logged], kAnyAge_ns);
 }
 

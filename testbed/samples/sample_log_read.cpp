@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "engine/core/refusal.hpp"
+#include "engine/core/source_name.hpp"
 #include "engine/core/text.hpp"
 #include "engine/recording/cdr.hpp"
 #include "engine/recording/ros_types.hpp"
@@ -209,10 +210,15 @@ Status LogVisitor::source(std::span<const std::byte> bytes) {
   in.number<std::int32_t>(), in.number<std::uint32_t>(), in.text();
   const auto number = in.number<SourceId>();
   std::string source = in.text();
-  const bool read = in.whole() && in.left() == 0 && is_name(source);
+  const std::string where = fmt::format("{}: source {}", name_, log_.sources.size());
+  Status named = number == kSimulation && source == kSimulationName
+                     ? Status()
+                     : check_source_name(where, source);
+  const bool read = in.whole() && in.left() == 0 && named.ok();
   if (!read || number != log_.sources.size()) {
-    const Error error =
-        bad_input("{}: source {} has no name in printable text", name_, log_.sources.size());
+    const Error error = named.ok() ? refusal(where, fmt::format("the number {}", number),
+                                             "whole messages, numbered one after another")
+                                   : named.error();
     if (!read || number < log_.sources.size()) return error;
     doubt_ = error;
     return {};

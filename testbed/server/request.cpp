@@ -7,6 +7,7 @@
 #include <set>
 
 #include "engine/core/refusal.hpp"
+#include "engine/core/source_name.hpp"
 #include "engine/net/message_pack.hpp"
 
 namespace neritic::testbed {
@@ -93,6 +94,14 @@ class Keys {
     }
     refuse(key, shown(*value), fmt::format("up to {} letters, digits and signs", kMostText));
   }
+  // Under which samples enter.
+  void source(const char* key, std::string& to) {
+    const json* value = find(key, false);
+    if (!value) return;
+    if (!value->is_string()) return refuse(key, shown(*value), std::string(kAcceptedSourceName));
+    to = value->get<std::string>();
+    error_ = check_source_name(fmt::format("{}: {}", op_, key), to);
+  }
   void values(const char* key, std::vector<double>& to) {
     const json* value = find(key, true);
     if (!value) return;
@@ -139,7 +148,7 @@ void read_keys(Keys& keys, Request& request) {
     case Op::kHello: {
       std::uint64_t protocol = 0;
       keys.count("protocol", protocol, kProtocol, kProtocol, true);
-      keys.text("name", request.name, false);
+      keys.source("name", request.name);
       return;
     }
     case Op::kTime: {
@@ -190,7 +199,7 @@ void read_keys(Keys& keys, Request& request) {
     case Op::kInject:
       keys.text("stream", request.stream, true);
       keys.values("values", request.values);
-      keys.text("source", request.source, false);
+      keys.source("source", request.source);
       keys.number("stamp_s", request.stamp_s, -kMostTime_s, kMostTime_s);
       return;
     case Op::kRelease:

@@ -6,6 +6,8 @@
 #include <string_view>
 
 #include "engine/core/files.hpp"
+#include "engine/core/refusal.hpp"
+#include "engine/core/source_name.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -13,7 +15,6 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they lie");
 
 constexpr std::string_view kMagic = "NRTCSAVE";
-constexpr std::size_t kLongestName = 255;
 constexpr std::uint32_t kVersion = 6;
 
 struct Header {
@@ -93,10 +94,11 @@ Result<std::vector<std::string>> parse_names(std::span<const std::byte> bytes, s
     std::string source(length, ' ');
     std::memcpy(source.data(), bytes.data() + at, length);
     at += length;
-    const bool printable = std::ranges::all_of(source, [](char c) { return c >= ' ' && c <= '~'; });
-    if (source.empty() || !printable || std::ranges::find(out, source) != out.end())
-      return bad_input("{}: source {}: found an empty, unprintable or repeated name; accepted: {}",
-                       name, out.size(), "printable ASCII, each name once");
+    if (!out.empty())
+      NERITIC_TRY_STATUS(check_source_name(fmt::format("{}: source {}", name, out.size()), source));
+    if (std::ranges::find(out, source) != out.end())
+      return refusal(fmt::format("{}: source {}", name, out.size()), source + " again",
+                     "each name once");
     if (out.size() < first.size() && source != first[out.size()])
       return bad_input("{}: source {}: found '{}'; accepted: '{}', as in the scene", name,
                        out.size(), source, first[out.size()]);
@@ -139,7 +141,8 @@ std::vector<std::byte> encode_state(const StateFormat& format, const SavedState&
   append(out, saved.state);
   append(out, saved.inputs);
   for (const std::string& source : saved.sources) {
-    NERITIC_CHECK(source.size() <= kLongestName, "a source's name of {} bytes", source.size());
+    NERITIC_CHECK(source.size() <= kLongestSourceName, "a source's name of {} bytes",
+                  source.size());
     out.push_back(static_cast<std::byte>(source.size()));
     const auto bytes = std::as_bytes(std::span(source));
     out.insert(out.end(), bytes.begin(), bytes.end());

@@ -503,6 +503,15 @@ class Worlds(unittest.TestCase):
             world.restore(state)
         self.assertEqual([obs.step for obs in asyncio.run(self.all_of(world.ticks(np.int64(3), count=np.int64(2))))], [7, 10])
 
+    def test_a_source_with_a_name_that_states_and_recordings_cannot_have_is_refused(self):
+        world = neritic.open(str(ROOT / "assets/scenes/dive.toml"), seed=1)
+        for name in ("süit", "", "tab\tx", "two words", "x" * 65, "x" * 300, "simulation", "recording"):
+            with self.subTest(name=name), self.assertRaisesRegex(neritic.BadInput, "source: found .*; accepted: 1 to 64 printable"):
+                world.inject("diver/buttons", [1, 0, 0], source=name)
+        world.inject("diver/buttons", [1, 0, 0], source="x" * 64)
+        world.tick(3)
+        world.restore(world.save())
+
     @staticmethod
     async def all_of(ticks):
         return [one async for one in ticks]

@@ -265,6 +265,9 @@ INSTANTIATE_TEST_SUITE_P(
         WrongPhysics{"[physics]\n" ROV "inputs = { wrench = 'recording' }",
                      "s.toml:6: vehicles[0].inputs.wrench: found \"recording\"; accepted: "
                      "autopilot, nobody, or a source's name of up to 64 printable characters"},
+        WrongPhysics{"[physics]\n" ROV "inputs = { wrench = 'simulation' }",
+                     "s.toml:6: vehicles[0].inputs.wrench: found \"simulation\"; accepted: "
+                     "autopilot, nobody, or a source's name of up to 64 printable characters"},
         WrongPhysics{"[physics]\n" ROV "inputs = { wrench = { hold_s = 3 } }",
                      "s.toml:6: vehicles[0].inputs.wrench.from: found nothing; accepted: "
                      "autopilot, nobody, or a source's name of up to 64 printable characters"},

@@ -30,6 +30,25 @@ TEST(SampleInbox, SamplesLeaveInTheOrderInWhichTheyCame) {
   EXPECT_EQ(inbox.counts(suit).dropped, 0u);
 }
 
+// Saved states, recordings and the server's clients then have the same names.
+TEST(SampleInbox, ASourceHasANameThatAllCanWriteAndRead) {
+  const StreamTable table = diver_and_rov();
+  SampleInbox inbox(table, 8);
+  for (const std::string& name : {std::string("a"), std::string(64, 'x'), std::string("tcp://~")})
+    EXPECT_TRUE(inbox.open(name).ok()) << name;
+  const std::string none[] = {
+      "",          "two words", "tab\tx",    "s\xc3\xbcit", std::string(65, 'x'),
+      "autopilot", "nobody",    "recording", "simulation"};
+  for (const std::string& name : none) {
+    const auto opened = inbox.open(name);
+    ASSERT_FALSE(opened.ok()) << name;
+    EXPECT_EQ(opened.error().code, ErrorCode::kBadInput);
+    EXPECT_TRUE(opened.error().message.starts_with("source: found ")) << opened.error().message;
+    EXPECT_EQ(opened.error().message.find_first_of("\n\t"), std::string::npos);
+  }
+  EXPECT_EQ(inbox.source_names().size(), 4u);
+}
+
 TEST(SampleInbox, EveryWrongSampleIsRefusedAndCountedByItsSource) {
   const StreamTable table = diver_and_rov();
   SampleInbox inbox(table, 64);
@@ -117,9 +136,9 @@ TEST(SampleInbox, SourcesAreBounded) {
   const StreamTable table = diver_and_rov();
   SampleInbox inbox(table, 8);
   for (std::size_t i = 1; i < SampleInbox::kMaxSources; ++i)
-    ASSERT_TRUE(inbox.open(fmt::format("device {}", i)).ok());
-  EXPECT_FALSE(inbox.open("one more").ok());
-  EXPECT_TRUE(inbox.open("device 7").ok());
+    ASSERT_TRUE(inbox.open(fmt::format("device_{}", i)).ok());
+  EXPECT_FALSE(inbox.open("one_more").ok());
+  EXPECT_TRUE(inbox.open("device_7").ok());
 }
 
 TEST(SampleInbox, ABurstOfAMillionKeepsWhatTheBoundAllowsAndTheNewestOfEachSourceAndStream) {
@@ -159,7 +178,7 @@ TEST(SampleInbox, ThreadsThatPushBurstsLoseNothingUncounted) {
   std::atomic<int> running{3};
   for (int i = 0; i < 3; ++i)
     producers.emplace_back([&, i] {
-      const SourceId source = inbox.open(fmt::format("device {}", i)).value();
+      const SourceId source = inbox.open(fmt::format("device_{}", i)).value();
       for (std::uint64_t n = 0; n < kEach; ++n)
         inbox.push(sample_of(table, streams[i], source, n, payloads[i]));
       --running;

@@ -232,15 +232,16 @@ TEST_P(BadSampleLog, IsTheDocumentedLine) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, BadSampleLog,
-    testing::Values(BadLog{"bad.log: found a step of 0 s; accepted: over 0 to 1 s",
-                           [](SampleLog& log) { log.step_s = 0.0; }},
-                    BadLog{"bad.log: sample 0, of diver/joints at step 0, is not finite",
-                           [](SampleLog& log) {
-                             std::get<BodyJoints>(log.entries[0].sample.payload).joints[2].y =
-                                 std::numeric_limits<double>::quiet_NaN();
-                           }},
-                    BadLog{"bad.log: source 1 has no name in printable text",
-                           [](SampleLog& log) { log.sources[1] = "\n"; }}));
+    testing::Values(
+        BadLog{"bad.log: found a step of 0 s; accepted: over 0 to 1 s",
+               [](SampleLog& log) { log.step_s = 0.0; }},
+        BadLog{"bad.log: sample 0, of diver/joints at step 0, is not finite",
+               [](SampleLog& log) {
+                 std::get<BodyJoints>(log.entries[0].sample.payload).joints[2].y =
+                     std::numeric_limits<double>::quiet_NaN();
+               }},
+        BadLog{"bad.log: source 1: found '?'; accepted: 1 to 64 printable ASCII characters",
+               [](SampleLog& log) { log.sources[1] = "\n"; }}));
 
 TEST(SampleLog, AnOlderVersionsLogAndOtherStreamsAreRefusedInOneLine) {
   const std::string old = "NRTCLOG3 and so on";
