@@ -17,7 +17,7 @@ namespace {
 // One sample of each stream, every number of its payload another one.
 SampleLog log_of_every_kind() {
   const StreamTable table = diver_and_rov();
-  SampleLog log{0.25, 42, logged_streams(table), {"simulation", "motion suit"}, {}, {1, 2, 3, 4}};
+  SampleLog log{0.25, 42, logged_streams(table), {"simulation", "motion_suit"}, {}, {1, 2, 3, 4}};
   double next = 0.5;
   for (StreamId id = 0; id < table.size(); ++id) {
     Payload payload = empty_payload(table[id].kind);
@@ -232,16 +232,17 @@ TEST_P(BadSampleLog, IsTheDocumentedLine) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, BadSampleLog,
-    testing::Values(
-        BadLog{"bad.log: found a step of 0 s; accepted: over 0 to 1 s",
-               [](SampleLog& log) { log.step_s = 0.0; }},
-        BadLog{"bad.log: sample 0, of diver/joints at step 0, is not finite",
-               [](SampleLog& log) {
-                 std::get<BodyJoints>(log.entries[0].sample.payload).joints[2].y =
-                     std::numeric_limits<double>::quiet_NaN();
-               }},
-        BadLog{"bad.log: source 1: found '?'; accepted: 1 to 64 printable ASCII characters",
-               [](SampleLog& log) { log.sources[1] = "\n"; }}));
+    testing::Values(BadLog{"bad.log: found a step of 0 s; accepted: over 0 to 1 s",
+                           [](SampleLog& log) { log.step_s = 0.0; }},
+                    BadLog{"bad.log: sample 0, of diver/joints at step 0, is not finite",
+                           [](SampleLog& log) {
+                             std::get<BodyJoints>(log.entries[0].sample.payload).joints[2].y =
+                                 std::numeric_limits<double>::quiet_NaN();
+                           }},
+                    BadLog{"bad.log: source 1: found '?'; accepted: 1 to 64 printable ASCII "
+                           "characters without spaces, but autopilot, nobody, recording, "
+                           "simulation",
+                           [](SampleLog& log) { log.sources[1] = "\n"; }}));
 
 TEST(SampleLog, AnOlderVersionsLogAndOtherStreamsAreRefusedInOneLine) {
   const std::string old = "NRTCLOG3 and so on";
