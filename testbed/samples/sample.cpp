@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/sim/fields.hpp"
+#include "testbed/samples/unit_rotation.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -26,24 +27,17 @@ Payload make_payload(std::size_t kind, std::index_sequence<index...>) {
   return payload;
 }
 
-// Tolerance of the squared length: 32-bit floats, and senders that round to three digits.
-constexpr double kUnitWithin = 2e-3;
-
 bool within(const Vec3& v, double most) {
   return std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most;
-}
-
-bool unit(const Quat& q) {
-  return std::abs(glm::dot(q, q) - 1.0) <= kUnitWithin;
 }
 
 // The poses and rotations in value, at any depth.
 template <class T>
 bool plausible_in(const T& value) {
   if constexpr (std::same_as<T, Quat>) {
-    return unit(value);
+    return is_unit_rotation(value);
   } else if constexpr (std::same_as<T, Pose>) {
-    return within(value.position_m, kFarthest_m) && unit(value.rotation);
+    return within(value.position_m, kFarthest_m) && is_unit_rotation(value.rotation);
   } else if constexpr (sim::Scalar<T> || std::is_enum_v<T>) {
     return true;
   } else {

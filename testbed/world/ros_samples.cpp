@@ -5,6 +5,7 @@
 
 #include "engine/core/refusal.hpp"
 #include "engine/core/ros_frames.hpp"
+#include "testbed/samples/unit_rotation.hpp"
 
 namespace neritic::testbed::ros {
 namespace {
@@ -101,7 +102,8 @@ struct Reader {
   }
   Quat quat() {
     at += 4;
-    return unit_or_identity(Quat(at[-1], at[-4], at[-3], at[-2]));
+    const Quat q(at[-1], at[-4], at[-3], at[-2]);
+    return is_unit_rotation(q) ? unit_or_identity(q) : q;  // for plausible() to refuse
   }
   template <class T>
   void number(const char*, T& value) {
@@ -203,6 +205,60 @@ struct Checker {
     at += 4 * std::size(values);
   }
   static constexpr double kMostCount = 9e15;
+};
+
+// The first rotation that is no unit quaternion, and its name.
+struct RotationFinder {
+  const double* at;
+  std::uint64_t left_out;  // bits: rotations that mean nothing, in their order
+  std::string name;
+  double length = 0.0;
+  void one(const std::string& called) {
+    at += 4;
+    const Quat q(at[-1], at[-4], at[-3], at[-2]);
+    const bool means = (left_out & 1) == 0;
+    left_out >>= 1;
+    if (!name.empty() || !means || is_unit_rotation(q)) return;
+    name = called;
+    length = std::hypot(std::hypot(q.x, q.y), std::hypot(q.z, q.w));
+  }
+  template <class T>
+  void number(const char*, const T&) {
+    ++at;
+  }
+  template <class T>
+  void choice(const char*, const T&, T) {
+    ++at;
+  }
+  template <class T, class To, class From>
+  void vector(const char*, const T&, const To&, const From&) {
+    at += 3;
+  }
+  template <class T, class To, class From>
+  void rotation(const char* called, const T&, const To&, const From&) {
+    one(called);
+  }
+  template <class T, class Both>
+  void angle(const char*, const T&, const Both&) {
+    ++at;
+  }
+  template <class T>
+  void bits(const char*, const T&, std::uint32_t count) {
+    at += count;
+  }
+  template <class T>
+  void list(const char*, const T& values) {
+    at += std::size(values);
+  }
+  template <class T>
+  void words(const char*, const T& values) {
+    at += std::size(values);
+  }
+  template <class T, class Both>
+  void rotations(const char* called, const T& values, const Both&) {
+    for (std::size_t i = 0; i < std::size(values); ++i)
+      one(fmt::format("{} at place {}", called, i));
+  }
 };
 
 // The conversions: those of vectors and rotations there and back, those of angles both ways.
@@ -521,6 +577,20 @@ Status check_values(PayloadKind kind, std::span<const double> values, std::strin
   Checker checker{values.data(), where, {}};
   std::visit([&](const auto& p) { describe(checker, p, &p); }, payload);
   return checker.status;
+}
+
+Error implausible(PayloadKind kind, std::span<const double> values, std::string_view where) {
+  const Payload payload = read_values(kind, values);
+  const auto* hands = std::get_if<HandPoses>(&payload);
+  RotationFinder finder{values.data(), hands ? ~hands->tracked : 0, {}};
+  std::visit([&](const auto& p) { describe(finder, p, &p); }, payload);
+  if (!finder.name.empty())
+    return refusal(fmt::format("{}: {}", where, finder.name),
+                   fmt::format("a quaternion of length {:.4g}", finder.length),
+                   "x y z w of length 1, within 0.001");
+  return refusal(where, "numbers beyond what can be",
+                 fmt::format("places to {} km, speeds to {} m/s, forces to {} N", kFarthest_m / 1e3,
+                             kFastest, kStrongest));
 }
 
 std::string frame_of(PayloadKind kind, const std::string& owner) {

@@ -28,8 +28,12 @@ inline constexpr std::size_t kMostReadingValues = 32;
 std::size_t write_values(const Payload& payload, std::span<double> out);
 // kBadInput where a number of a choice, a count or bits is none of those that there are.
 Status check_values(PayloadKind kind, std::span<const double> values, std::string_view where);
-// Rotations are made unit. Precondition: value_count(kind) values, all finite.
+// Rotations whose length is 1 within the tolerance of plausible() are made unit; others stay as
+// they are, so that it refuses them. Precondition: value_count(kind) values, all finite.
 Payload read_values(PayloadKind kind, std::span<const double> values);
+// The line for values of which plausible() is false: the first rotation that is none, or the limits
+// of places, speeds and forces. Precondition: as above.
+Error implausible(PayloadKind kind, std::span<const double> values, std::string_view where);
 
 // The frame of a reading's vectors: "rov/imu", "rov" or "world".
 std::string frame_of(PayloadKind kind, const std::string& owner);

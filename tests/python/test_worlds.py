@@ -484,6 +484,8 @@ class Worlds(unittest.TestCase):
             "accepted: a file's path": (lambda: neritic.open(None), lambda: neritic.vector("hover", vehicle=3), lambda: world.record(3).__enter__()),
             "accepted: 60": (lambda: diver.joints(np.zeros(59)), lambda: diver.joints(np.zeros(61))),
             "a quaternion of length": (lambda: diver.joints(np.zeros(60)), lambda: diver.joints(stands * 1e200), lambda: diver.head([0] * 4),
+                                       lambda: diver.joints(stands * 1.8), lambda: diver.joints(stands * 0.99),
+                                       lambda: world.inject("diver/joints", np.zeros(61), "suit"),
                                        lambda: diver.joints(stands * np.nan)),
             "accepted: True or False": (lambda: diver.jacket(inflate=-1), lambda: diver.jacket(dump="x"),
                                         lambda: neritic.open(MISSION, real_time="x")),

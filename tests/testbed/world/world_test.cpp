@@ -359,6 +359,45 @@ TEST_F(WorldTest, RefusesInOneLine) {
   }
 }
 
+TEST_F(WorldTest, RefusesRotationsThatAreNone) {
+  NERITIC_ASSERT_OK(const auto world, World::open(assets("scenes/dive.toml"), {}));
+  const auto said = [](const Status& status) {
+    return status.ok() ? std::string() : status.error().message;
+  };
+  const auto joints = [](double length) {
+    std::vector<double> values;
+    for (int i = 0; i < 15; ++i)
+      values.insert(values.end(), {0.0, 0.0, 0.6 * length, 0.8 * length});
+    values.push_back(0.0);
+    return values;
+  };
+  EXPECT_EQ(said(world->inject("diver/joints", joints(1.0), "suit")), "");
+  EXPECT_EQ(said(world->inject("diver/joints", joints(0.9995), "suit")), "");
+  EXPECT_EQ(said(world->inject("diver/joints", joints(0.0), "suit")),
+            "diver/joints: joints at place 0: found a quaternion of length 0; accepted: x y z w of "
+            "length 1, within 0.001");
+  for (const double length : {1e-3, 0.99, 1.01, 1.8}) {
+    const std::string where = "joints at place 0: found a quaternion of length";
+    EXPECT_NE(said(world->inject("diver/joints", joints(length), "suit")).find(where),
+              std::string::npos);
+    // A command that is refused leaves the authority as it was: the state is that of a world
+    // without.
+    EXPECT_NE(said(world->command("diver", "joints", joints(length))).find(where),
+              std::string::npos);
+  }
+  NERITIC_ASSERT_OK(const auto other, World::open(assets("scenes/dive.toml"), {}));
+  ASSERT_TRUE(world->tick(24).ok() && other->tick(24).ok());
+  EXPECT_EQ(world->hash(), other->hash());
+  // Of a hand that is not tracked the pose means nothing.
+  std::vector<double> hands{0, 0, -5, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0};
+  EXPECT_EQ(said(world->inject("diver/hand_poses", hands, "suit")), "");
+  hands[15] = 1.0;
+  EXPECT_EQ(
+      said(world->inject("diver/hand_poses", hands, "suit")),
+      "diver/hand_poses: right_orientation: found a quaternion of length 0; accepted: x y z w "
+      "of length 1, within 0.001");
+}
+
 TEST_F(WorldTest, RefusesATankThatADiverLacksAndAStampThatIsToCome) {
   NERITIC_ASSERT_OK(const auto world, World::open(assets("scenes/dive.toml"), {}));
   const auto said = [](const Status& status) {

@@ -60,14 +60,15 @@ def number(where: str, value: Any, least: float = -math.inf, most: float = math.
 
 
 def rotations(where: str, values: ArrayLike, count: int) -> NDArray[np.float64]:
-    """Quaternions x y z w in one row. Any length is accepted from which a rotation follows."""
+    """Quaternions x y z w in one row, of length 1 as samples of devices have it (testbed/samples/unit_rotation.hpp)."""
     row = numbers(where, values, 4 * count)
     with np.errstate(over="ignore", invalid="ignore"):
-        length = np.sqrt(np.square(row.reshape(count, 4)).sum(axis=1))
-    wrong = ~((length >= 1e-3) & (length <= 1e3))
+        squared = np.square(row.reshape(count, 4)).sum(axis=1)
+        length = np.sqrt(squared)
+    wrong = ~(np.abs(squared - 1.0) <= 2e-3)
     if wrong.any():
         at = f" at place {int(wrong.argmax())}" if count > 1 else ""
-        raise BadInput(f"{where}: found a quaternion of length {length[wrong.argmax()]:g}{at}; accepted: x y z w of length 1")
+        raise BadInput(f"{where}: found a quaternion of length {length[wrong.argmax()]:g}{at}; accepted: x y z w of length 1, within 0.001")
     return row
 
 
