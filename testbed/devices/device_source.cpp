@@ -138,14 +138,20 @@ DeviceHealth DeviceSource::health() const {
   return health_;
 }
 
+LinkState link_state(const DeviceHealth& health, TimeNs now_ns) {
+  if (health.heard_ns == 0) return LinkState::kWaiting;
+  return now_ns - health.heard_ns > kSecond_ns ? LinkState::kSilent : LinkState::kHeard;
+}
+
 std::string health_words(const DeviceHealth& health, TimeNs now_ns) {
   const net::LinkCounts& link = health.link;
   std::string words = fmt::format("{} ({}, {}): ", health.name, health.device, health.where);
   if (!health.trouble.empty()) words += health.trouble + ", ";
-  if (health.heard_ns == 0) return words + "nothing heard yet";
+  const LinkState state = link_state(health, now_ns);
+  if (state == LinkState::kWaiting) return words + "nothing heard yet";
   const double silent_s = 1e-9 * static_cast<double>(now_ns - health.heard_ns);
-  words += silent_s > 1.0 ? fmt::format("silent for {:.0f} s", silent_s)
-                          : fmt::format("{:.0f} packets a second", health.rate_hz);
+  words += state == LinkState::kSilent ? fmt::format("silent for {:.0f} s", silent_s)
+                                       : fmt::format("{:.0f} packets a second", health.rate_hz);
   if (link.lost > 0) words += fmt::format(", {:.1f} % lost", 100.0 * lost_share(link));
   for (const auto& [count, what] : {std::pair(link.older, "out of order"),
                                     {link.repeated, "repeated"},
@@ -171,9 +177,10 @@ std::string link_words(const DeviceHealth& health) {
 }
 
 std::string stream_words(const DeviceHealth& health, TimeNs now_ns) {
-  if (health.heard_ns == 0)
+  const LinkState state = link_state(health, now_ns);
+  if (state == LinkState::kWaiting)
     return fmt::format("{}: nothing heard at {}", health.name, health.where);
-  if (now_ns - health.heard_ns > kSecond_ns)
+  if (state == LinkState::kSilent)
     return fmt::format("{}: silent for {:.0f} s", health.name,
                        1e-9 * static_cast<double>(now_ns - health.heard_ns));
   std::string words = link_words(health);

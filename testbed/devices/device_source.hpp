@@ -25,6 +25,10 @@ struct DeviceHealth {
   double rate_hz = 0.0;                     // datagrams of late
   std::string trouble;                      // of the connection, or why nothing is used
 };
+// What an operator is told first: no datagram came yet, some came within a second, or none did.
+enum class LinkState { kWaiting, kHeard, kSilent };
+LinkState link_state(const DeviceHealth& health, TimeNs now_ns);
+
 // "suit (mxtp, udp://127.0.0.1:9763): 480 packets a second, 2.0 % lost, clock -12.345678 s, drift
 // 12 ppm, jitter 10 ms (longest 20)". now_ns: on the clock of heard_ns.
 std::string health_words(const DeviceHealth& health, TimeNs now_ns);

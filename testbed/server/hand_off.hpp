@@ -40,6 +40,7 @@ struct Answer {
   std::vector<std::byte> bytes;              // of kSave
   std::string text;                          // of kRecord: the file
   std::unique_ptr<Instruments> instruments;  // of kInstruments
+  std::vector<SourceInfo> sources;           // of kSources
 };
 struct News {
   std::uint64_t step = 0;

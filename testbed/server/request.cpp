@@ -16,9 +16,9 @@ namespace {
 using nlohmann::json;
 
 constexpr std::array<std::string_view, kOps> kNames{
-    "hello", "time",  "counts",      "observe", "shared",  "tick",    "wait",
-    "clock", "keep",  "image",       "link",    "command", "release", "inject",
-    "truth", "poses", "instruments", "save",    "restore", "record",  "stop_recording"};
+    "hello", "time",        "counts", "observe", "shared",  "tick",          "wait",    "clock",
+    "keep",  "image",       "link",   "command", "release", "inject",        "sources", "truth",
+    "poses", "instruments", "save",   "restore", "record",  "stop_recording"};
 
 // The value found, short enough for a line and printable.
 std::string shown(const json& value) {
@@ -211,6 +211,7 @@ void read_keys(Keys& keys, Request& request) {
       keys.text("name", request.name, true);
       return;
     case Op::kCounts:
+    case Op::kSources:
     case Op::kPoses:
     case Op::kSave:
     case Op::kRestore:

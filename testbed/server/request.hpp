@@ -32,6 +32,7 @@ enum class Op : std::uint32_t {
   kCommand,
   kRelease,
   kInject,
+  kSources,
   kTruth,
   kPoses,
   kInstruments,

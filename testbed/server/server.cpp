@@ -48,6 +48,26 @@ json described(const ServedFacts& facts) {
           {"real_time", facts.real_time}, {"agents", agents},         {"streams", streams}};
 }
 
+// A source with its counts; null: not known.
+json described(const SourceInfo& source) {
+  json map{{"name", source.name}, {"health", source.health}};
+  for (const auto& [name, count] : named_counts(source.counts)) map[std::string(name)] = count;
+  if (!source.link) return map;
+  const SourceInfo::Link& link = *source.link;
+  const auto known = [](const std::optional<double>& value) {
+    return value ? json(*value) : json(nullptr);
+  };
+  map["link"] = {{"device", link.device},
+                 {"where", link.where},
+                 {"rate_hz", link.rate_hz},
+                 {"lost", link.lost},
+                 {"clock_offset_s", known(link.clock_offset_s)},
+                 {"clock_drift_ppm", known(link.clock_drift_ppm)},
+                 {"jitter_ms", known(link.jitter_ms)},
+                 {"trouble", link.trouble}};
+  return map;
+}
+
 }  // namespace
 
 class Server::Network {
@@ -305,6 +325,11 @@ void Server::Network::answer(const Answer& answer) {
       json& numbers = map["numbers"] = json::object();
       for (const auto& [name, value] : answer.instruments->numbers) numbers[name] = value;
       map["streams"] = answer.instruments->streams;
+      break;
+    }
+    case Op::kSources: {
+      json& sources = map["sources"] = json::array();
+      for (const SourceInfo& source : answer.sources) sources.push_back(described(source));
       break;
     }
     case Op::kSave:

@@ -286,6 +286,9 @@ Status WorldServer::act(const Ask& ask, Answer& answer) {
       return world_.release(request.agent, ask.name);
     case Op::kInject:
       return inject(ask);
+    case Op::kSources:
+      answer.sources = world_.sources();
+      return {};
     case Op::kTruth: {
       NERITIC_TRY(const std::size_t agent, world_.agent(request.agent));
       truth_of(static_cast<std::uint32_t>(agent), answer);

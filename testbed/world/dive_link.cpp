@@ -11,8 +11,9 @@ DiveLink::DiveLink(const LivePhysics& physics, std::unique_ptr<World> world)
     : world_(std::move(world)), outputs_(OutputSamples::all(physics.world())) {}
 
 Result<std::unique_ptr<DiveLink>> DiveLink::create(LivePhysics& physics, const scene::Scene& scene,
-                                                   const std::string& path) {
-  NERITIC_TRY(auto world, World::attach(physics, scene, path));
+                                                   const std::string& path,
+                                                   const Devices* devices) {
+  NERITIC_TRY(auto world, World::attach(physics, scene, path, devices));
   return std::unique_ptr<DiveLink>(new DiveLink(physics, std::move(world)));
 }
 

@@ -14,9 +14,9 @@ namespace neritic::testbed {
 
 class DiveLink final : public StepSink, public SampleSource {
  public:
-  // Borrows physics and scene.
+  // Borrows all; devices: null where the scene's are not listened to.
   static Result<std::unique_ptr<DiveLink>> create(LivePhysics& physics, const scene::Scene& scene,
-                                                  const std::string& path);
+                                                  const std::string& path, const Devices* devices);
 
   // The loop's thread.
   World& world() { return *world_; }

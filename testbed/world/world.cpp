@@ -123,21 +123,24 @@ Result<std::unique_ptr<World>> World::open(const std::filesystem::path& path,
       std::make_unique<Receiver>(parts.world(), parts.scene.seed, parts.streams.size());
   // Devices send by the clock on the wall.
   if (options.real_time) {
-    NERITIC_TRY(parts.devices, Devices::open(parts.scene, parts.world(), parts.physics->inbox(),
-                                             DeviceSource::Pace::kThread));
+    NERITIC_TRY(parts.owned_devices,
+                Devices::open(parts.scene, parts.world(), parts.physics->inbox(),
+                              DeviceSource::Pace::kThread));
+    parts.devices = parts.owned_devices.get();
   }
   parts.begin_loop();
   return world;
 }
 
 Result<std::unique_ptr<World>> World::attach(LivePhysics& physics, const scene::Scene& scene,
-                                             const std::string& path) {
+                                             const std::string& path, const Devices* devices) {
   std::unique_ptr<World> world(new World);
   world->parts_ = std::make_unique<Parts>();
   Parts& parts = *world->parts_;
   parts.options.real_time = true;
   parts.path = path;
   parts.physics = &physics;
+  parts.devices = devices;
   parts.scene.title = scene.title, parts.scene.seed = scene.seed;
   parts.motions = &scene;
   parts.agents = agents_of(parts.world());
@@ -393,7 +396,7 @@ Status World::record(const std::filesystem::path& path) {
     return refusal("record", "a recording that runs, " + recording.file().string(),
                    "that recording's end before it");
   NERITIC_TRY(RecordingOptions options, recording_of_scene(parts_->path));
-  if (parts_->devices) options.signals = parts_->devices->signals();
+  if (parts_->owned_devices) options.signals = parts_->owned_devices->signals();
   std::filesystem::path base = path;
   if (base.extension() == ".mcap") base.replace_extension();
   recording.begin(parts_->physics->simulation(), base, std::move(options));

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "engine/core/result.hpp"
+#include "testbed/samples/inbox.hpp"
 #include "testbed/world/arrivals.hpp"
 
 namespace neritic::scene {
@@ -107,9 +108,32 @@ struct Instruments {
   std::vector<std::array<std::string, 3>> streams;
 };
 
+// A source of samples (a device of the scene, a program, a client of the server) and what became
+// of its samples.
+struct SourceInfo {
+  // Of a device that the scene opens, as an operator's panel has it.
+  struct Link {
+    std::string device, where;  // "mxtp", "udp://127.0.0.1:9763"
+    double rate_hz = 0.0;       // packets of late
+    std::uint64_t lost = 0;     // packets that never came, by their own counter
+    // Where its packets have a clock: host minus device, s; by which that is slow, 1e-6 (0 in the
+    // first half minute); mean of the way's time beyond the shortest, ms.
+    std::optional<double> clock_offset_s, clock_drift_ppm, jitter_ms;
+    std::string trouble;  // of the connection, or why nothing is used; empty: none
+  };
+  std::string name;
+  SourceCounts counts;
+  // "waiting": never heard; "lost": it fell silent, so that a group of inputs is without it, or its
+  // link is for a second; "good". Empty: no group listens to it, and it is no device.
+  std::string health;
+  std::optional<Link> link;
+};
+// The counts with their names for programs: "accepted", "dropped", ...
+std::vector<std::pair<std::string_view, std::uint64_t>> named_counts(const SourceCounts& counts);
+
+class Devices;
 class ImageConsumer;
 class LivePhysics;
-struct Sample;
 
 class World {
  public:
@@ -118,9 +142,11 @@ class World {
                                              const WorldOptions& options = {});
   // A world of a physics that another loop turns; it and the scene outlive this world: readings,
   // commands and truths of it, no tick(), no restore(), no recording. Its images are computed by
-  // that loop, among whose consumers images() must be. path: of the scene.
+  // that loop, among whose consumers images() must be. path: of the scene. devices: of the scene,
+  // which outlive this world; null: there are none.
   static Result<std::unique_ptr<World>> attach(LivePhysics& physics, const scene::Scene& scene,
-                                               const std::string& path);
+                                               const std::string& path,
+                                               const Devices* devices = nullptr);
   // Ends the recording.
   ~World();
 
@@ -197,6 +223,9 @@ class World {
   Status inject(const std::string& stream, std::span<const double> values,
                 const std::string& source, std::optional<double> stamp_s = {});
   static constexpr const char* kClient = "client";
+
+  // All sources that were opened, in the order in which they were; not the simulation itself.
+  std::vector<SourceInfo> sources() const;
 
   Result<Truth> truth(const std::string& agent) const;
   // kBadInput for an agent that is no diver.

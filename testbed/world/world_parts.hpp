@@ -80,7 +80,8 @@ struct World::Parts {
   std::vector<StreamInfo> streams;
   std::size_t first_image = 0;  // into streams
   std::unique_ptr<Receiver> receiver;
-  std::unique_ptr<Devices> devices;  // of the scene, in real time; threads of their own
+  std::unique_ptr<Devices> owned_devices;  // of the scene, in real time; threads of their own
+  const Devices* devices = nullptr;        // absent: none, or in lock-step
   // Images. In the order of creation: each uses those before it.
   std::unique_ptr<gpu::Device> device;
   std::unique_ptr<Session> session;

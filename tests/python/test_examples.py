@@ -1,13 +1,16 @@
 """The examples of the Python package and the Python of the READMEs: they run and do what they say."""
 
+import binascii
 import contextlib
 import importlib.util
 import io
 import os
 import re
 import socket
+import struct
 import subprocess
 import tempfile
+import time
 import unittest
 import wave
 from pathlib import Path
@@ -76,6 +79,33 @@ class Examples(unittest.TestCase):
                         break
                 else:
                     self.fail("nothing was heard")
+
+    def test_counts_tell_the_health_and_the_clock_of_the_scenes_devices(self):
+        assets, port = ROOT / "assets", 46000 + os.getpid() % 900
+        with tempfile.TemporaryDirectory() as folder, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+            scene = Path(folder) / "lab.toml"
+            scene.write_text(f'[physics]\n[[objects]]\nname = "diver"\nmodel = "{assets}/models/diver.glb"\n'
+                             f'human = "{assets}/divers/recreational.toml"\nposition_m = [0, -12, 0]\n'
+                             f'[sources]\njacket = "jacket udp {port}"\ngaze = "gaze udp {port + 1}"\n')
+            with neritic.open(scene) as world:
+                self.assertIsNone(world.counts()["sources"]["jacket"].link)  # in lock-step nobody listens
+            with neritic.open(scene, real_time=True) as world:
+                self.assertEqual(world.counts()["sources"]["jacket"].health, "waiting")
+                begin = time.monotonic()
+                for i in range(40):
+                    # UBCD version 1 (engine/net/jacket_wire.hpp), by a clock that is 500 s behind; number 10 never comes.
+                    late_us = int((time.monotonic() - begin + 100.0) * 1e6)
+                    body = struct.pack("<4sBBHQBB3H", b"UBCD", 1, 0, i + (i >= 10), late_us, 0, 0, 0, 0, 0)
+                    sender.sendto(body + struct.pack("<H", binascii.crc_hqx(body, 0xffff)), ("127.0.0.1", port))
+                    world.tick(6)
+                sources = world.counts()["sources"]
+                jacket = sources["jacket"]
+                self.assertEqual((jacket.health, sources["gaze"].health), ("good", "waiting"))
+                self.assertGreater(jacket.accepted, 20)
+                self.assertEqual((jacket.link.device, jacket.link.lost, jacket.link.trouble), ("jacket", 1, ""))
+                # The host's clock and this one are the same but for their starts.
+                self.assertAlmostEqual(jacket.link.clock_offset_s, begin - 100.0, delta=1.0)
+                self.assertIsNone(sources["gaze"].link.clock_offset_s)
 
     def test_a_recording_has_the_sound_of_the_scenes_microphone(self):
         assets = ROOT / "assets"

@@ -160,6 +160,18 @@ class Remote(unittest.TestCase):
             self.assertEqual((there.step, there.lost_readings), (here.step, 0))
             self.assertEqual((there.counts()["lost_readings"], there.counts()["lost_images"]), (0, 0))
 
+    def test_counts_of_sources_are_those_of_the_process(self):
+        with Served() as address, neritic.open(SCENE, seed=3) as here, neritic.connect(address) as there:
+            for world in (here, there):
+                for k in range(1500):
+                    world.inject("diver/buttons", [k % 2, 0, 0], source="jacket")
+                world["diver"].jacket(inflate=True)
+                world.tick(3)
+            a, b = here.counts()["sources"], there.counts()["sources"]
+            self.assertEqual(a, b)
+            self.assertEqual((a["jacket"].accepted, a["jacket"].dropped), (1500, 1500 - 1024 - 1))
+            self.assertEqual((a["python"].health, a["jacket"].link), ("good", None))
+
     def test_a_call_that_was_given_up_loses_no_reading(self):
         with Served() as address, neritic.connect(address) as there:
             heard = []

@@ -356,7 +356,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::stri
   if (!flags.serve.empty()) {
     NERITIC_TRY(const ServerOptions options,
                 server_options("--serve", flags.serve, flags.keys, kServedClients));
-    NERITIC_TRY(served, ServedDive::start(options, *physics, session->scene()));
+    NERITIC_TRY(served, ServedDive::start(options, *physics, session->scene(), devices.get()));
     step_sinks.push_back(&served->link());
     sources.push_back(&served->link());
     if (!flags.quiet && !flags.json) {

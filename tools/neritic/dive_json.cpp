@@ -124,16 +124,8 @@ nlohmann::json sources_json(const SampleInbox& inbox, const std::vector<DeviceHe
   for (SourceId id = 0; id < names.size(); ++id) {
     const SourceCounts counts = inbox.counts(id);
     if (id == kSimulation && counts.accepted == 0 && !in_trouble(counts)) continue;
-    json.push_back({{"name", names[id]},
-                    {"accepted", counts.accepted},
-                    {"dropped", counts.dropped},
-                    {"lost", counts.lost},
-                    {"late", counts.late},
-                    {"repeated", counts.repeated},
-                    {"out_of_order", counts.out_of_order},
-                    {"not_finite", counts.not_finite},
-                    {"not_plausible", counts.not_plausible},
-                    {"not_of_stream", counts.not_of_stream}});
+    json.push_back({{"name", names[id]}});
+    for (const auto& [name, count] : named_counts(counts)) json.back()[std::string(name)] = count;
     for (const DeviceHealth& health : devices)
       if (health.name == names[id]) json.back()["link"] = device_json(health);
   }

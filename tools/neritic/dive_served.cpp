@@ -33,8 +33,9 @@ ServedDive::ServedDive(std::unique_ptr<DiveLink> link)
 
 Result<std::unique_ptr<ServedDive>> ServedDive::start(const ServerOptions& options,
                                                       LivePhysics& physics,
-                                                      const scene::Scene& scene) {
-  NERITIC_TRY(auto link, DiveLink::create(physics, scene, scene.path));
+                                                      const scene::Scene& scene,
+                                                      const Devices* devices) {
+  NERITIC_TRY(auto link, DiveLink::create(physics, scene, scene.path, devices));
   std::unique_ptr<ServedDive> dive(new ServedDive(std::move(link)));
   NERITIC_TRY(dive->server_,
               Server::start(facts_of(dive->link_->world(), true, std::string(program_version())),

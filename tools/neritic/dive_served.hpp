@@ -18,10 +18,11 @@ Result<testbed::ServerOptions> server_options(const std::string& flag, const std
 // Joins the loop as a step sink and a source; the network has a thread of its own.
 class ServedDive {
  public:
-  // Borrows physics and scene. Errors as Server::start.
+  // Borrows physics, scene and devices (null: none). Errors as Server::start.
   static Result<std::unique_ptr<ServedDive>> start(const testbed::ServerOptions& options,
                                                    testbed::LivePhysics& physics,
-                                                   const scene::Scene& scene);
+                                                   const scene::Scene& scene,
+                                                   const testbed::Devices* devices);
   testbed::DiveLink& link() { return *link_; }
   // For the loop's sensors: the images that clients want.
   testbed::ImageConsumer* images() { return link_->world().images(); }

@@ -84,6 +84,28 @@ py::tuple header_of(const Reading& reading) {
                         reading.arrival_ns);
 }
 
+// A source of samples, as the server's answer to "sources" has it.
+py::dict source_of(const SourceInfo& source) {
+  py::dict out;
+  out["name"] = source.name;
+  out["health"] = source.health;
+  for (const auto& [name, count] : named_counts(source.counts))
+    out[py::str(std::string(name))] = count;
+  if (!source.link) return out;
+  const SourceInfo::Link& link = *source.link;
+  py::dict of;
+  of["device"] = link.device;
+  of["where"] = link.where;
+  of["rate_hz"] = link.rate_hz;
+  of["lost"] = link.lost;
+  of["clock_offset_s"] = link.clock_offset_s;
+  of["clock_drift_ppm"] = link.clock_drift_ppm;
+  of["jitter_ms"] = link.jitter_ms;
+  of["trouble"] = link.trouble;
+  out["link"] = of;
+  return out;
+}
+
 // The pixels where they lie: the array keeps the image, whose memory this is, alive.
 py::array pixels_of(py::object owner) {
   const auto& image = owner.cast<const WorldImage&>();
@@ -320,6 +342,13 @@ void bind_world(py::module_& m) {
               const std::string& source, std::optional<double> stamp_s) {
              with(self,
                   [&](World& w) { check(w.inject(stream, span_of(values), source, stamp_s)); });
+           })
+      .def("sources",
+           [](PyWorld& self) {
+             py::list out;
+             for (const SourceInfo& one : with(self, [](World& w) { return w.sources(); }))
+               out.append(source_of(one));
+             return out;
            })
       .def("truth",
            [](PyWorld& self, const std::string& agent) {

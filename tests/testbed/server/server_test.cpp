@@ -113,6 +113,27 @@ TEST_F(ServerTest, AClientSeesWhatAProgramInTheProcessSees) {
   EXPECT_GT(compared, 100u);
 }
 
+TEST_F(ServerTest, TellsWhatBecameOfTheSamplesOfEachSource) {
+  serve();
+  const auto remote = client();
+  const json pushes = {10.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  for (int i = 0; i < 3; ++i)
+    done(*remote,
+         {{"op", "inject"}, {"stream", "rov/wrench"}, {"values", pushes}, {"source", "pad"}});
+  (void)refused(*remote, {{"op", "inject"},
+                          {"stream", "rov/wrench"},
+                          {"values", pushes},
+                          {"source", "pad"},
+                          {"stamp_s", -9.0}});
+  const json sources = done(*remote, {{"op", "sources"}}).map.at("sources");
+  ASSERT_EQ(sources.size(), 1u);
+  EXPECT_EQ(sources[0].at("name"), "pad");
+  EXPECT_EQ(sources[0].at("accepted"), 3);
+  EXPECT_EQ(sources[0].at("late"), 1);
+  EXPECT_EQ(sources[0].at("health"), "");
+  EXPECT_FALSE(sources[0].contains("link"));
+}
+
 TEST_F(ServerTest, EachReadingOfAKeptStreamComes) {
   serve();
   const auto remote = client();

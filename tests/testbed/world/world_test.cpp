@@ -359,6 +359,34 @@ TEST_F(WorldTest, RefusesInOneLine) {
   }
 }
 
+TEST_F(WorldTest, TellsWhatBecameOfTheSamplesOfEachSource) {
+  const auto world = open();
+  EXPECT_TRUE(world->sources().empty());
+  constexpr std::uint64_t kSent = 3000;
+  const double pushes[] = {10.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  for (std::uint64_t i = 0; i < kSent; ++i)
+    ASSERT_TRUE(world->inject("rov/wrench", pushes, "burst").ok());
+  const double too_strong[] = {1e9, 0.0, 0.0, 0.0, 0.0, 0.0};
+  EXPECT_FALSE(world->inject("rov/wrench", too_strong, "burst").ok());
+  EXPECT_FALSE(world->inject("rov/wrench", pushes, "old", -5.0).ok());
+  ASSERT_TRUE(world->command("rov", "wrench", pushes, 0.5, "pilot").ok());
+  ASSERT_TRUE(world->tick(2).ok());
+  const auto sources = world->sources();
+  ASSERT_EQ(sources.size(), 3u);
+  EXPECT_EQ(sources[0].name, "burst");
+  EXPECT_EQ(sources[0].counts.accepted, kSent);
+  // The inbox keeps its capacity and the newest one.
+  EXPECT_EQ(sources[0].counts.dropped, kSent - SampleInbox::kCapacity - 1);
+  EXPECT_EQ(sources[0].counts.not_plausible, 1u);
+  EXPECT_EQ(sources[0].health, "");  // no group listens to it
+  EXPECT_FALSE(sources[0].link);
+  EXPECT_EQ(sources[1].counts.late, 1u);
+  EXPECT_EQ(sources[2].name, "pilot");
+  EXPECT_EQ(sources[2].health, "good");
+  ASSERT_TRUE(world->tick(240).ok());
+  EXPECT_EQ(world->sources()[2].health, "lost");
+}
+
 TEST_F(WorldTest, RefusesRotationsThatAreNone) {
   NERITIC_ASSERT_OK(const auto world, World::open(assets("scenes/dive.toml"), {}));
   const auto said = [](const Status& status) {

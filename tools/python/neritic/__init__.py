@@ -21,12 +21,13 @@ from .agents import Agent, Diver, TrackedObject, Vehicle
 from .errors import BadInput, Error
 from .observations import MODEM_EVENTS, Image, Message, Observations, Reading, Stream, Truth
 from .remote import RemoteWorld, connect
+from .sources import Counts, Link, ServerCounts, Source
 from .vector import VectorEnv, vector
 from .world import World, open
 
 _core.set_errors(Error, BadInput)
 
 __all__ = [
-    "Agent", "BadInput", "Diver", "Error", "Image", "MODEM_EVENTS", "Message", "Observations", "Reading", "RemoteWorld", "Stream",
-    "TrackedObject", "Truth", "VectorEnv", "Vehicle", "World", "connect", "open", "vector",
+    "Agent", "BadInput", "Counts", "Diver", "Error", "Image", "Link", "MODEM_EVENTS", "Message", "Observations", "Reading",
+    "RemoteWorld", "ServerCounts", "Source", "Stream", "TrackedObject", "Truth", "VectorEnv", "Vehicle", "World", "connect", "open", "vector",
 ]

@@ -15,7 +15,7 @@ import sys
 import threading
 import time
 import weakref
-from typing import Any, Mapping, Optional, Sequence, Union
+from typing import Any, Mapping, Optional, Sequence, Union, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from .arguments import number, path, shown, whole, word
 from .errors import BadInput, Error
 from .observations import Pixels, Row, Rows, Truth
+from .sources import ServerCounts, sources_of
 from .world import MOST_STEPS, World
 
 _PROTOCOL = 1
@@ -419,6 +420,9 @@ class Core:
     def counts(self) -> dict[str, int]:
         return self._call("counts")[0]["counts"]
 
+    def sources(self) -> list[dict[str, Any]]:
+        return self._call("sources")[0]["sources"]
+
     def close(self) -> None:
         try:
             if self.recording and not self.closed:
@@ -514,9 +518,11 @@ class RemoteWorld(World):
                                 joints.get(i, nothing))
                 for i, (agent, row) in enumerate(zip(self._core.agents, poses))}
 
-    def counts(self) -> dict[str, int]:
-        """The server's counts: clients, requests, refusals, losses; and lost_readings and lost_images of this client."""
-        return {**self._core.counts(), "lost_readings": self.lost_readings, "lost_images": self.lost_images}
+    def counts(self) -> ServerCounts:
+        """The server's counts: clients, requests, refusals, losses; lost_readings and lost_images of this client; sources, by
+        name, of all clients and devices, as in World.counts()."""
+        return cast(ServerCounts, {**self._core.counts(), "sources": sources_of(self._core.sources()),
+                                   "lost_readings": self.lost_readings, "lost_images": self.lost_images})
 
 
 def connect(address: str, *, name: str = World.source, key: Optional[str] = None,

@@ -17,6 +17,7 @@ from .agents import MOST_NUMBERS, Agent, Diver, TrackedObject, Vehicle
 from .arguments import finite, flag, number, numbers, path as path_of, shown, whole, word
 from .errors import BadInput, Error
 from .observations import MODEM_EVENTS, Image, Message, Observations, Reading, Stream, Table, Truth, offsets_of
+from .sources import Counts, sources_of
 
 MOST_STEPS = 100_000_000
 """Steps of one tick, at most."""
@@ -267,9 +268,10 @@ class World:
         """Ends the world and its recording. A tick of another thread ends after its step."""
         self._core.close()
 
-    def counts(self) -> dict[str, int]:
-        """Losses: dropped_readings, of readings and images that came faster than they were taken."""
-        return {"dropped_readings": self._core.dropped}
+    def counts(self) -> Counts:
+        """Losses: dropped_readings, of readings and images that came faster than they were taken; sources, by name: what
+        became of the samples of each, its health and its clock (Source)."""
+        return {"dropped_readings": self._core.dropped, "sources": sources_of(self._core.sources())}
 
     def __enter__(self) -> World:
         return self
