@@ -642,7 +642,7 @@ class Measures(unittest.TestCase):
 class Tasks(unittest.TestCase):
     """A task's file and its controller, without a program."""
 
-    def made(self, task="", stages='[[stages]]\nname = "near"\nuntil = "time > 1"\n', player="", act="return None", sets=()):
+    def made(self, task="", stages='[[stages]]\nname = "near"\nuntil = "time > 1"\n', player="", act="return None", sets=(), head=""):
         """The checked task of a scenario with these lines."""
         import task as kind
         folder = tempfile.mkdtemp()
@@ -651,7 +651,7 @@ class Tasks(unittest.TestCase):
         for name, text in (("scene.toml", '[[objects]]\nname = "rov"\n[[objects]]\nname = "diver"\n'),
                            ("act.py", f"class Controller:\n    def __init__(self, world, settings, seed):\n        pass\n\n    def act(self, obs, stage):\n        {act}\n"),
                            ("play.py", f"class Player:\n    def __init__(self, world, settings, seed):\n        pass\n\n    def act(self, obs, stage, told):\n        {player or 'pass'}\n"),
-                           ("own.toml", '[experiment]\nkind = "task"\n[task]\nscene = "scene.toml"\ncontroller = "act.py"\n'
+                           ("own.toml", '[experiment]\nkind = "task"\n' + head + '[task]\nscene = "scene.toml"\ncontroller = "act.py"\n'
                                         + ('player = "play.py"\n' if player else "") + task + "\n" + stages)):
             with open(os.path.join(folder, name), "w") as file:
                 file.write(text)
@@ -783,6 +783,15 @@ wanted_m = "3 - share - 0.01 * heart(diver)"
                 self.run_of(self.made(stages=stages, act=act, **both))
         with self.assertRaisesRegex(scenario.Failed, 'play.py: act told "close"; accepted: far'):
             self.run_of(self.made(stages=stages, task='tells = ["far"]', player='return {"close": 1}'))
+
+    def test_what_is_read_is_text(self):
+        stages = '[[stages]]\nname = "near"\nuntil = "time > 1"\n[[measures]]\nname = "m"\nof = "time"\n'
+        for wrong in ("2026-01-01", "7", "[]"):
+            for key in ("unit", "meaning"):
+                self.refused(rf"measures\[0\]\.{key}: found .*; accepted: text", stages=stages + f"{key} = {wrong}\n")
+            self.refused(r"task\.settings\.a\.meaning: found .*; accepted: text", task=f"[task.settings]\na = {{ default = 1, meaning = {wrong} }}")
+            for key in ("title", "about"):
+                self.refused(rf"experiment\.{key}: found .*; accepted: text", stages=stages, head=f"{key} = {wrong}\n")
 
     def test_another_controller_is_named_where_it_tells_what_nobody_asked(self):
         self.made()

@@ -482,6 +482,11 @@ sys.exit(status)
                 status, text = self.study("begin", "--plan", os.path.join(self.scratch, "plan.toml"))
                 self.assertEqual((status, text.count("\n")), (2, 1), text)
                 self.assertIn(f"study.{key}: found", text)
+            for wrong, found in (("2026-01-01", '"2026-01-01"'), ("7", "7"), ('["a"]', "a list")):
+                self.write("plan.toml", self.PLAN + f"about = {wrong}\n")
+                status, text = self.study("begin", "--plan", os.path.join(self.scratch, "plan.toml"))
+                self.assertEqual((status, text.count("\n")), (2, 1), text)
+                self.assertIn(f"blocks[1].about: found {found}; accepted: text", text)
 
 
 class Diver(unittest.TestCase):

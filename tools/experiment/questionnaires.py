@@ -9,7 +9,7 @@ trust: twelve items of 1 to 7, the first five reversed; the mean (Jian, Bisantz 
 """
 import itertools
 
-from scenario import Refused, check_keys, _number
+from scenario import Refused, check_keys, text_of, _number
 
 TLX = ["mental demand", "physical demand", "temporal demand", "performance (0 perfect, 100 failure)", "effort", "frustration"]
 SSQ = ["general discomfort", "fatigue", "headache", "eye strain", "difficulty focusing", "salivation increasing", "sweating",
@@ -116,10 +116,7 @@ def own(where, table):
             raise Refused(f"{at}.step: found {step}; accepted: one that leads from {low} to {high}")
         if not isinstance(turned, list) or not all(type(i) is int and 1 <= i <= len(items) for i in turned):
             raise Refused(f"{at}.reversed: found {turned!r}; accepted: a list of numbers from 1 to {len(items)}")
-        for key in ("title", "ends"):
-            if not isinstance(about.get(key, ""), str):
-                raise Refused(f"{at}.{key}: found {about[key]!r}; accepted: text")
-        made[name] = Form(about.get("title", name), _scaled(items, low, high, step), about.get("ends", f"{low} to {high}"),
+        made[name] = Form(text_of(at, about, "title", name), _scaled(items, low, high, step), text_of(at, about, "ends", f"{low} to {high}"),
                           _mean_of(f"{name}_mean", set(turned), low + high))
     return made
 

@@ -92,6 +92,14 @@ def _word_of(where, value, accepted):
         raise Refused(f"{where}: found {_words(value)}; accepted: {', '.join(accepted)}")
 
 
+def text_of(where, table, key, default=""):
+    """The text of a key, or its default."""
+    value = table.get(key, default)
+    if not isinstance(value, str):
+        raise Refused(f"{where}.{key}: found {_words(value)}; accepted: text")
+    return value
+
+
 class Setting:
     """A value that a kind of experiment understands: its default, its limits or words, and what it means. decides: whether a run's
     numbers depend on it."""
@@ -149,7 +157,7 @@ class Scenario:
         _word_of(f"{path}: experiment.kind", kind, kinds)
         self.kind_name = kind
         self.kind = kinds[kind](path, data) if isinstance(kinds[kind], type) else kinds[kind]
-        self.title, self.about = str(head.get("title", self.name)), str(head.get("about", ""))
+        self.title, self.about = (text_of(f"{path}: experiment", head, key, own_text) for key, own_text in (("title", self.name), ("about", "")))
         self.runs = _number("--runs" if runs is not None else f"{path}: experiment.runs",
                             runs if runs is not None else head.get("runs", 1), 1, MOST_RUNS, True)
         self.seed = _number("--seed" if seed is not None else f"{path}: experiment.seed",

@@ -33,7 +33,7 @@ import block_commands
 import questionnaires
 from report import write_file
 import scenario
-from scenario import Failed, Refused, check_keys
+from scenario import Failed, Refused, check_keys, text_of
 
 # By the format of a study: what stands between block and questionnaire in a file's name. No name has a hyphen; by _ the answers of
 # two could share a file.
@@ -76,6 +76,7 @@ def read_plan(path):
                 or block["name"] in [*names, "before", "after"]:
             raise Refused(f"{path}: blocks[{i}].name: found {block.get('name')!r}; accepted: a new word of letters, digits, _, "
                           "not before or after")
+        text_of(f"{path}: blocks[{i}]", block, "about")
         if not isinstance(block.get("command", []), list) or not all(isinstance(w, str) for w in block.get("command", [])):
             raise Refused(f"{path}: blocks[{i}].command: found {block['command']!r}; accepted: a list of words for neritic")
         block_commands.check(f"{path}: blocks[{i}].command", block.get("command", []))

@@ -5,7 +5,7 @@ import os
 import re
 
 from formulas import Formula
-from scenario import Refused, Setting, check_keys, read, _number, _word_of
+from scenario import Refused, Setting, check_keys, read, text_of, _number, _word_of
 
 STATISTICS = ("last", "first", "mean", "rms", "min", "max", "ever", "share", "duration")
 IN_WORDS = {"last": "the last", "first": "the first", "mean": "the mean of", "rms": "the root mean square of", "min": "the least", "max": "the largest",
@@ -95,7 +95,7 @@ class TaskFile:
                 raise Refused(f"{where}.words: found {words!r}; accepted: a list of words")
             if not isinstance(default, (int, float, str)):
                 raise Refused(f"{where}.default: found {default!r}; accepted: a number, true, false or a word")
-            self.SETTINGS[name] = Setting(default, str(table.get("meaning", "")), low, high, words)
+            self.SETTINGS[name] = Setting(default, text_of(where, table, "meaning"), low, high, words)
             self.SETTINGS[name].check(f"{where}.default", default)
 
     def _read_told(self, task):
@@ -156,9 +156,10 @@ class TaskFile:
             self.measures.append({"name": measure["name"], "of": self._formula(f"{where}.of", measure.get("of")),
                                   "statistic": statistic, "stage": stage})
             own_unit = "share of the time" if statistic == "share" else ""
-            unit = "yes or no" if statistic == "ever" else "s" if statistic == "duration" else str(measure.get("unit", own_unit))
+            unit = text_of(where, measure, "unit", own_unit)
+            unit = "yes or no" if statistic == "ever" else "s" if statistic == "duration" else unit
             of = f"{IN_WORDS[statistic]} {measure.get('of')}" + (f", in the stage {stage}" if stage else "")
-            self.MEASURES[measure["name"]] = (unit, str(measure.get("meaning", of)))
+            self.MEASURES[measure["name"]] = (unit, text_of(where, measure, "meaning", of))
 
     def _words(self, key, task):
         names = task.get(key, [])
