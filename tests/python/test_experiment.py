@@ -674,7 +674,8 @@ class Tasks(unittest.TestCase):
         world.observe, world.tick = lambda: seen, tick
         world.truth = lambda name: SimpleNamespace(position=np.array([2.0 * (name == "rov"), 0.0, -10.0]))
         tools = SimpleNamespace(python=lambda: SimpleNamespace(open=lambda *_, **__: world))
-        return plan.kind.run(plan.settings, 1, tools)[0]
+        measures, self.series = plan.kind.run(plan.settings, 1, tools)
+        return measures
 
     def test_the_time_of_a_run_and_of_its_stages_counts_the_held_seconds(self):
         stages = "".join(f'[[stages]]\nname = "{n}"\nuntil = "stage_time > 0.99"\nheld_s = {held}\n' for n, held in (("a", 2.0), ("b", 0.5)))
@@ -693,6 +694,14 @@ class Tasks(unittest.TestCase):
         plan = self.made(task='control_hz = 241', stages=stages.replace('"n', '"time'))
         with self.assertRaisesRegex(scenario.Failed, r"own.toml: task.control_hz: found 241; accepted: at most 240, the rate of the physics"):
             self.run_of(plan, hz=240)
+
+    def test_no_stage_is_lost_from_a_runs_series(self):
+        stages = "".join(f'[[stages]]\nname = "{n}"\nuntil = "{u}"\n' for n, u in (("long", "time > 99"), ("short", "time > 0"), ("end", "time > 120")))
+        plan = self.made(task="seconds = 200.0", stages=stages)
+        self.run_of(plan)
+        series = self.series
+        self.assertEqual(sorted(set(series["stage"])), [0, 1, 2])
+        self.assertLess(len(series["t"]), 810)
 
     def test_what_is_not_known_says_neither_yes_nor_no(self):
         import formulas
@@ -881,7 +890,7 @@ class Figures(unittest.TestCase):
 
     def test_of_a_task(self):
         import task_figures
-        plan = SimpleNamespace(measures=[{"name": f"far_{i}_m", "statistic": "max"} for i in range(5)],
+        plan = SimpleNamespace(stages=[{"name": "go"}], measures=[{"name": f"far_{i}_m", "statistic": "max", "stage": None} for i in range(5)],
                                MEASURES={"success": ("yes or no", ""), **{f"far_{i}_m": ("m", "how far") for i in range(5)}})
         scenario = SimpleNamespace(criteria=[{"measure": m, "at_most": 1} for m in ("success", "far_0_m", "far_1_m")])
         long = "/tmp/a/very/long/path/of/somebody/with/many/folders/mine.py"
@@ -897,6 +906,23 @@ class Figures(unittest.TestCase):
                 self.assertNotIn("folders", told)
                 self.assertEqual("The first 12 of 14 conditions" in alt, len(conditions) > 12)
             self.assertIn("The first 4 of 5 measures", made["task.png"][1])
+
+    def test_a_measure_of_a_stage_is_drawn_in_that_stage_alone(self):
+        import task_figures
+        plan = SimpleNamespace(stages=[{"name": "join"}, {"name": "ascend"}],
+                               measures=[{"name": n, "statistic": "mean", "stage": s} for n, s in (("all_m", None), ("up_m", "ascend"), ("first_m", "join"))],
+                               MEASURES={n: ("m", "how far") for n in ("all_m", "up_m", "first_m")})
+        conditions = [{"controller": "baseline"}, {"controller": "null"}]
+        t, far = [0.0, 1.0, 2.0, 3.0], [4.0, 3.0, 2.0, 1.0]
+        results = [{"condition": c, "seed": 1, "settings": c, "measures": {}, "failure": None,
+                    "series": {"t": t, "stage": stage, **dict.fromkeys(plan.MEASURES, far)}}
+                   for c, stage in zip(conditions, ([0, 1, 1, 1], [0, 0, 0, 0]))]
+        (name, _, fig), = task_figures.figures(plan, SimpleNamespace(criteria=[]), results, self.style)
+        drawn = [[[v if math.isfinite(v) else None for v in line.get_ydata()] for line in ax.lines] for ax in fig.axes]
+        self.assertEqual(drawn, [[far], [far], [[None, 3.0, 2.0, 1.0]], [[None] * 4], [[4.0, None, None, None]], [far]])
+        self.assertEqual([[t.get_text() for t in ax.texts] for ax in fig.axes], [[], [], [], ["no value"], [], []])
+        self.assertEqual(fig.axes[4].lines[0].get_marker(), ".")  # a line of one point is none
+        self.assertIn("up (stage ascend): how far", [t.get_text() for t in fig.texts])
 
     def test_of_the_echo_sounder(self):
         import echo_sounder

@@ -166,8 +166,11 @@ class Task(TaskFile):
             course.see(moment, world.time)
         measures = course.measures(1.0 / self.control_hz)
         world.close()
-        keep = slice(None, None, max(1, len(course.series["t"]) // 400))
-        return measures, {k: v[keep] for k, v in course.series.items()}
+        stages = course.series["stage"]
+        every = max(1, len(stages) // 400)
+        # The first moment of each stage too, so that none is lost.
+        keep = [i for i in range(len(stages)) if i % every == 0 or stages[i] != stages[i - 1]]
+        return measures, {k: [v[i] for i in keep] for k, v in course.series.items()}
 
     def figures(self, scenario, results, style):
         return task_figures.figures(self, scenario, results, style)

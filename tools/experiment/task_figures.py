@@ -1,4 +1,5 @@
-"""The figures of a task's report: the measures of the criteria by condition, and each run's measures over time."""
+"""The figures of a task's report: the measures of the criteria by condition, and each run's measures over time, a stage's in that
+stage alone."""
 import numpy as np
 
 import intervals
@@ -16,7 +17,7 @@ def figures(task, scenario, results, style):
         told = [report.left_out(MOST, len(groups), "conditions"), report.left_out(JUDGED, len(judged), "measures")]
         yield "outcome.png", " ".join(["The measures of the criteria by condition.", *filter(None, told)]), \
             _outcomes(task, scenario, judged[:JUDGED], groups[:MOST], names, told, style)
-    over_time = [m["name"] for m in task.measures if m["statistic"] not in ("ever", "duration", "share")]
+    over_time = [m for m in task.measures if m["statistic"] not in ("ever", "duration", "share")]
     if not over_time or not any(r["series"] for r in results):
         return
     told = [report.left_out(MOST, len(groups), "conditions"), report.left_out(MEASURES, len(over_time), "measures"),
@@ -26,27 +27,28 @@ def figures(task, scenario, results, style):
 
 
 def _over_time(task, shown, groups, names, told, style):
-    """For each measure a panel a condition."""
+    """For each measure a panel a condition, over the time of whole runs."""
     across = report.columns(names[:len(groups)], ACROSS)
     down = -(-len(groups) // across)
     tall, wide = 165, (800 if across == 1 else 820) // across
     block = 40 + tall * down
     fig = style.figure(900, 30 + block * len(shown))
     width, height = fig.get_size_inches() * style.DPI
-    for m, name in enumerate(shown):
-        top = 20 + block * m
-        fig.text(24 / width, 1 - (top + 8) / height, style.short(_title(task, name), 120), size=10, weight="bold", color=style.INK)
-        values = [style.numbers(r["series"][name]) for _, group in groups for r in group[:RUNS] if r["series"]]
+    for m, measure in enumerate(shown):
+        name, top = measure["name"], 20 + block * m
+        fig.text(24 / width, 1 - (top + 8) / height, style.short(_title(task, measure), 120), size=10, weight="bold", color=style.INK)
+        curves = [[(r["series"]["t"], _curve(task, measure, r["series"], style)) for r in group[:RUNS] if r["series"]] for _, group in groups]
+        values = [v for of in curves for _, v in of]
         # Flat curves get ticks of few digits.
         least = max(1e-6, 0.02 * max([float(np.abs(v[np.isfinite(v)]).max()) for v in values if np.isfinite(v).any()], default=1.0))
-        last = max(r["series"]["t"][-1] for _, group in groups for r in group[:RUNS] if r["series"])
-        for g, (_, group) in enumerate(groups):
+        last = max(t[-1] for of in curves for t, _ in of)
+        for g, of in enumerate(curves):
             left, up = 80 + wide * (g % across), top + 40 + tall * (g // across)
             ax = style.area(fig, left, up, left + wide - (50 if across > 1 else 10), up + tall - 65)
-            done = [r for r in group[:RUNS] if r["series"]]
-            for r in done:
-                ax.plot(r["series"]["t"], style.numbers(r["series"][name]), color=style.BLUE, lw=1.0, alpha=1.0 if len(done) < 4 else 0.7)
-            if not any(np.isfinite(style.numbers(r["series"][name])).any() for r in done):
+            for t, v in of:
+                alone = "." if np.isfinite(v).sum() == 1 else None
+                ax.plot(t, v, color=style.BLUE, lw=1.0, marker=alone, alpha=1.0 if len(of) < 4 else 0.7)
+            if not any(np.isfinite(v).any() for _, v in of):
                 ax.text(0.5, 0.5, "no value", transform=ax.transAxes, ha="center", va="center", color=style.INK, size=8)
             style.room(ax, values, least)
             ax.set_xlim(0, 1.02 * last)
@@ -73,9 +75,20 @@ def _words(task, name):
     return (name.removesuffix("_" + unit) if unit else name).replace("_", " ")
 
 
-def _title(task, name):
-    """With what it means."""
-    return f"{_words(task, name)}: {task.MEASURES[name][1]}"
+def _curve(task, measure, series, style):
+    """A run's measure at each time of its series; NaN outside of the stage that it is of."""
+    values = style.numbers(series[measure["name"]])
+    if measure["stage"] is None:
+        return values
+    stage = [s["name"] for s in task.stages].index(measure["stage"])
+    return np.where(np.array(series["stage"]) == stage, values, np.nan)
+
+
+def _title(task, measure):
+    """With what it means, and in which stage."""
+    meaning, stage = task.MEASURES[measure["name"]][1], measure["stage"]
+    of = f" (stage {stage.replace('_', ' ')})" if stage and f"in the stage {stage}" not in meaning else ""
+    return f"{_words(task, measure['name'])}{of}: {meaning}"
 
 
 def _outcomes(task, scenario, judged, groups, names, told, style):
