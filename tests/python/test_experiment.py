@@ -118,17 +118,43 @@ class Imaging(unittest.TestCase):
 
 class Pages(unittest.TestCase):
     def test_the_page_of_all_tells_what_failed_and_what_is_missing(self):
-        criterion = {"measure": "m", "statistic": "median", "where": {}, "less": None, "found": 0.5, "n": 3, "of": 3, "at_most": 1.0,
-                     "at_least": None, "holds": True, "counts": True}
-        told = {"experiment": "one", "runs": 3, "processor_s": 90.0, "criteria": [criterion, {**criterion, "holds": False},
+        criterion = {"measure": "m", "statistic": "median", "where": {}, "less": None, "found": 0.5, "low": 0.25, "high": 0.75, "n": 3,
+                     "of": 3, "at_most": 1.0, "at_least": None, "holds": True, "counts": True}
+        made = {"version": "neritic 0.1.0", "commit": "0123456789ab", "changed": True, "program": "feed"}
+        told = {"experiment": "one", "runs": 3, "seed": 4, "last_seed": 6, "made_by": made, "processor_s": 90.0, "criteria": [criterion, {**criterion, "holds": False},
                                                                                             {**criterion, "holds": False, "counts": False}]}
         with tempfile.TemporaryDirectory() as folder:
             report.index([told], [("two", "no <GPU>")], ["three"], folder)
             with open(os.path.join(folder, "index.html")) as file:
                 text = file.read()
             self.assertEqual(os.listdir(folder), ["index.html"])
-        for words in ("1 of 2 criteria hold; 3 runs took 1.5 minutes", "no &lt;GPU&gt;", "not run yet", "does not hold"):
+        for words in ("1 of 2 criteria hold; 3 runs took 1.5 minutes", "no &lt;GPU&gt;", "not run yet", "does not hold", "<td>0.25 to 0.75</td>",
+                      "<td>4 to 6</td>", "Made by neritic 0.1.0, commit 0123456789ab with changes, program feed."):
             self.assertIn(words, text)
+
+    def test_results_say_what_made_them(self):
+        import provenance
+        with tempfile.TemporaryDirectory() as folder:
+            program = pathlib.Path(folder, "neritic")
+            program.write_text("#!/bin/sh\necho neritic 7.8.9\n")
+            program.chmod(0o755)
+            here = provenance.of(str(program))
+            self.assertEqual((here["version"], len(here["program"])), ("neritic 7.8.9", 16))
+            commit = subprocess.run(["git", "-C", TOOLS, "rev-parse", "HEAD"], capture_output=True, text=True).stdout.strip()
+            self.assertEqual(here["commit"], commit[:12] or None)
+            # A copy that lies in somebody's repository is not of its commit.
+            for name in ("provenance", "files_read", "runner", "scenario", "endings"):
+                shutil.copy(os.path.join(TOOLS, name + ".py"), folder)
+            for words in (["init", "-q"], ["-c", "user.name=a", "-c", "user.email=a@b", "commit", "-q", "--allow-empty", "-m", "one"]):
+                if subprocess.run(["git", "-C", folder, *words]).returncode != 0:
+                    self.skipTest("no git here")
+            told = subprocess.run([sys.executable, "-B", "-c", f"import json, provenance; print(json.dumps(provenance.of({str(program)!r})))"],
+                                  cwd=folder, capture_output=True, text=True)
+            self.assertEqual(json.loads(told.stdout)["commit"], None, told.stderr)
+            program.write_text("#!/bin/sh\nexit 3\n")
+            provenance.of.cache_clear()
+            with self.assertRaisesRegex(scenario.Failed, "neritic --version: status 3"):
+                provenance.of(str(program))
 
 
 class Judging(unittest.TestCase):
@@ -168,6 +194,55 @@ class Judging(unittest.TestCase):
         self.assertTrue(self.judge([[9.0, 8.0, 9.0], [1.0, 1.0, 1.0]], **both)[0]["holds"])
         self.assertFalse(self.judge([[9.0, None, None], [1.0, 1.0, 1.0]], **both)[0]["holds"])
         self.assertFalse(self.judge([[9.0, 8.0, 9.0], [1.0, None, None]], **both)[0]["holds"])
+
+    def test_what_is_found_has_an_interval(self):
+        up = [float(i) for i in range(1, 21)]
+        one = self.judge(up, at_most=20.0)[0]
+        self.assertEqual((one["found"], one["low"], one["high"]), intervals.median_interval(up))
+        self.assertEqual(report.found(one, True), "10.5 (6 to 15; 20 of 20 runs)")
+        # What gave no value counts as the worst there too.
+        lost = self.judge(up[:13] + [None] * 7, at_most=20.0)[0]
+        self.assertEqual((lost["found"], lost["low"], lost["high"], report.interval(lost)), (10.5, 6.0, None, "6 or more"))
+        lost = self.judge(up[:13] + [None] * 7, at_least=-9.0)[0]
+        self.assertEqual((lost["found"], lost["low"], report.interval(lost)), (3.5, None, "8 or less"))
+        share = self.judge([True] * 19 + [None], statistic="share", at_least=0.5)[0]
+        self.assertEqual((share["low"], share["high"]), intervals.share_interval(19, 20)[1:])
+        mean = self.judge(up, statistic="mean", at_most=20.0)[0]
+        self.assertAlmostEqual(mean["high"] - 10.5, 2.0930 * np.std(up, ddof=1) / math.sqrt(20), 3)
+        for criterion in ({"statistic": "max", "at_most": 20.0}, {"statistic": "min", "at_least": 0.0}):
+            self.assertEqual(report.interval(self.judge(up, **criterion)[0]), "–")
+        # Runs of two conditions share their seeds, and count for no more than they are.
+        self.assertEqual(report.interval(self.judge([up, up], at_most=20.0)[0]), "–")
+
+    def test_a_difference_is_paired_by_its_seeds(self):
+        both, up = {"where": {"b": 1}, "less": {"b": 0}, "at_most": 9.0}, [float(i * i) for i in range(20)]
+        shifted = self.judge([up, [v + 0.5 for v in up]], **both)[0]
+        self.assertEqual((shifted["found"], shifted["low"], shifted["high"]), (0.5, 0.5, 0.5))  # as spread as they are
+        apart = self.judge([up, [v + 0.5 for v in up[::-1]]], **both)[0]
+        self.assertEqual(apart["found"], 0.5)
+        self.assertTrue(apart["low"] < -20 and apart["high"] > 20, apart)
+        self.assertEqual(report.interval(self.judge([up, up[:-1]], **both)[0]), "–")  # a seed without its pair
+        mean = self.judge([up, [v + 0.5 + 0.1 * (-1) ** i for i, v in enumerate(up)]], statistic="mean", **both)[0]
+        self.assertAlmostEqual(mean["high"] - mean["found"], 2.0930 * 0.1 * math.sqrt(20 / 19) / math.sqrt(20), 4)
+        lost = self.judge([up, [v + 0.5 for v in up[:-2]] + [None] * 2], **both)[0]
+        self.assertEqual(lost["found"], 0.5)
+        self.assertGreaterEqual(lost["high"], 0.5)
+
+    def test_intervals_of_differences_by_published_tables_and_by_draws(self):
+        # Examples of Newcombe 1998, method 10: pairs (yes, yes), (yes, no), (no, yes), (no, no) and the limits.
+        for counts, limits in (((36, 12, 2, 0), (0.0569, 0.3404)), ((20, 12, 2, 16), (0.0562, 0.3292))):
+            kinds = ((True, True), (True, False), (False, True), (False, False))
+            found, low, high = intervals.share_difference_interval([k for k, n in zip(kinds, counts) for _ in range(n)])
+            self.assertAlmostEqual(found, 0.2)
+            np.testing.assert_allclose((low, high), limits, atol=6e-5)
+        rng, within = np.random.Generator(np.random.Philox(key=7)), 0
+        for _ in range(200):
+            first = rng.normal(0, 1, 20)
+            second = 0.5 * first + rng.normal(1, 1, 20)
+            _, low, high = intervals.median_difference_interval(list(zip(second, first)), draws=400)
+            within += low <= 1.0 <= high
+        self.assertTrue(0.90 <= within / 200 <= 1.0, within)
+        self.assertEqual(intervals.median_difference_interval([(math.inf, 1.0)] * 3 + [(2.0, 1.0)] * 4), (1.0, 1.0, math.inf))
 
     def compare(self, sets, numbers, tables="", of="m"):
         """(summary, criteria as {words: verdict}) of a task with its measure m of each controller's runs, as --set asks for them."""

@@ -33,6 +33,7 @@ import sonar_crops
 import task
 import training
 
+import provenance
 import report
 import runner
 import scenario
@@ -63,7 +64,7 @@ def do(plan, asked, out):
     if any(getattr(plan.kind, "alone", lambda _: False)(run.settings) for run in plan.list_runs()):
         plan.criteria = []  # they are of the robot; a person who is slow is no fault
     results = runner.run_all(plan, out, asked.program, asked.workers, asked.resume, asked.quiet)
-    told = summary.summarise(plan, results)
+    told = {**summary.summarise(plan, results), "made_by": provenance.of(asked.program)}
     note = report.write(plan, results, told, out)
     if note and not asked.quiet:
         print(f"neritic: {plan.name}: {note}", file=sys.stderr)
@@ -125,7 +126,7 @@ def tell(told, out):
     print(f"{told['experiment']}: {told['runs']} runs, {told['failed']} failed; {out}/report.html")
     for c in told["criteria"]:
         verdict = report.verdict(c)
-        print(f"  {verdict.upper() if verdict == 'does not hold' else verdict:<14}{report.claim(c)}: {report.found(c)}; asked: {report.limit(c)}")
+        print(f"  {verdict.upper() if verdict == 'does not hold' else verdict:<14}{report.claim(c)}: {report.found(c, True)}; asked: {report.limit(c)}")
     for condition in told["conditions"]:
         for cause, n in condition["failures"].items():
             print(f"  {n} runs failed ({report.words(condition['condition'])}): {cause}")

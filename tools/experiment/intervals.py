@@ -1,5 +1,5 @@
-"""Numbers of many runs: medians and shares with 95 % confidence intervals. No random draws: the same runs give the
-same intervals."""
+"""Numbers of many runs: medians, means, shares and differences of two conditions with 95 % confidence intervals. The same runs give the
+same intervals: draws, where there are any, are by a counter."""
 import functools
 import math
 
@@ -45,6 +45,60 @@ def share_interval(successes, n):
     middle = (p + Z95 ** 2 / (2 * n)) / (1 + Z95 ** 2 / n)
     half = Z95 / (1 + Z95 ** 2 / n) * math.sqrt(p * (1 - p) / n + Z95 ** 2 / (4 * n * n))
     return p, max(0.0, middle - half), min(1.0, middle + half)
+
+
+def mean_interval(values):
+    """(mean, low, high) by Student's t, of normal values; None, None below LEAST of them."""
+    if not values:
+        return None, None, None
+    mean = sum(values) / len(values)
+    if len(values) < LEAST:
+        return mean, None, None
+    half = t_limit(len(values) - 1) * math.sqrt(_moments(values)[1] / len(values))
+    return mean, mean - half, mean + half
+
+
+def share_difference_interval(pairs):
+    """(difference, low, high) of two shares of the same runs, from pairs of truths: the first's share less the second's. Newcombe 1998
+    (Improved confidence intervals for the difference between binomial proportions based on paired data), method 10: Wilson's limits of each,
+    with the correlation of the two."""
+    n = len(pairs)
+    if n == 0:
+        return None, None, None
+    both, first, second = (sum(1 for p in pairs if p == kind) for kind in ((True, True), (True, False), (False, True)))
+    neither = n - both - first - second
+    p1, l1, u1 = share_interval(both + first, n)
+    p2, l2, u2 = share_interval(both + second, n)
+    product = (both + first) * (second + neither) * (both + second) * (first + neither)
+    together = both * neither - first * second
+    together = max(0.0, together - n / 2) if together > 0 else together  # continuity
+    phi = together / math.sqrt(product) if product else 0.0
+    below = (p1 - l1) ** 2 - 2 * phi * (p1 - l1) * (u2 - p2) + (u2 - p2) ** 2
+    above = (u1 - p1) ** 2 - 2 * phi * (u1 - p1) * (p2 - l2) + (p2 - l2) ** 2
+    return p1 - p2, p1 - p2 - math.sqrt(below), p1 - p2 + math.sqrt(above)
+
+
+def median_difference_interval(pairs, draws=2000):
+    """(difference, low, high) of two medians of the same runs, from pairs of numbers, of which the first's may be infinite with one sign and
+    the second's with the other: percentiles of the difference over resampled pairs (Efron and Tibshirani 1993, 13.3). Below six pairs low
+    and high are None, as of one median."""
+    import numpy as np
+    if not pairs:
+        return None, None, None
+    both = np.array(pairs, float)
+
+    def difference(values):  # [..., pairs, 2]
+        ordered, n = np.sort(values, axis=-2), len(pairs)
+        low, high = ordered[..., (n - 1) // 2, :], ordered[..., n // 2, :]
+        middle = np.where(low == high, low, 0.5 * (low + high))
+        return middle[..., 0] - middle[..., 1]
+    found = float(difference(both))
+    if len(pairs) < 6:
+        return found, None, None
+    rng = np.random.Generator(np.random.Philox(key=len(pairs)))
+    drawn = np.sort(difference(both[rng.integers(0, len(pairs), (draws, len(pairs)))]))
+    out = int(0.025 * draws)
+    return found, float(drawn[out]), float(drawn[-1 - out])
 
 
 def runs_to_tell(values, ratio=1.1, power=0.8):

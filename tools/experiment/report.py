@@ -55,10 +55,35 @@ def claim(c):
             + (f" less that of {words(c['less'])}" if c["less"] is not None else ""))
 
 
-def found(c):
+def found(c, with_interval=False):
     """The number, and of how many runs it is."""
     runs = f"{c['n']} of {c['of']} runs"
-    return f"{number(c['found'])} ({runs})" if c["found"] is not None else f"not determined ({runs} gave a value)"
+    if c["found"] is None:
+        return f"not determined ({runs} gave a value)"
+    return f"{number(c['found'])} ({f'{interval(c)}; ' if with_interval and interval(c) != '–' else ''}{runs})"
+
+
+def interval(c):
+    """Of 95 %, of what a criterion found."""
+    low, high = c["low"], c["high"]
+    if low is None or high is None:
+        return "–" if low is high else f"{number(low)} or more" if high is None else f"{number(high)} or less"
+    return f"{number(low)} to {number(high)}"
+
+
+def seeds(summary):
+    return f"{summary['seed']} to {summary['last_seed']}" if summary["last_seed"] > summary["seed"] else f"{summary['seed']}"
+
+
+def made_by(made):
+    """ "neritic 0.1.0, commit 0123456789ab with changes, program 0123456789abcdef", from provenance's data."""
+    commit = "commit unknown" if made["commit"] is None else f"commit {made['commit']}{' with changes' if made['changed'] else ''}"
+    return f"{made['version']}, {commit}, program {made['program']}"
+
+
+INTERVALS = ("Intervals are of 95 %, of one condition: of a median by order statistics, of a share Wilson's, of a mean by Student's t. A "
+             "difference of two conditions is paired by their seeds: of medians by 2000 resamplings of the pairs, of shares Newcombe's, of "
+             "means by Student's t of the differences. The least and the most of runs have none.")
 
 
 def verdict(c):
@@ -112,11 +137,11 @@ def _cell(value):
 
 
 def _criteria_rows(summary):
-    rows = ["<tr><th>criterion</th><th>asked</th><th>found</th><th></th></tr>"]
+    rows = ["<tr><th>criterion</th><th>asked</th><th>found</th><th>95 % interval</th><th></th></tr>"]
     for c in summary["criteria"]:
         name = claim(c)
         rows.append(f"<tr><td>{html.escape(name)}</td><td>{limit(c)}</td><td>{found(c)}</td>"
-                    f"<td>{_verdict_cell(c)}</td></tr>")
+                    f"<td>{interval(c)}</td><td>{_verdict_cell(c)}</td></tr>")
     return "<table>" + "".join(rows) + "</table>" if summary["criteria"] else ""
 
 
@@ -183,9 +208,9 @@ def page(scenario, summary, pictures, results=()):
     parts = [f"<!DOCTYPE html><html lang=\"en\"><meta charset=\"utf-8\"><title>{html.escape(scenario.title)}</title>"
              f"<style>{STYLE}</style><h1>{html.escape(scenario.title)}</h1>",
              f"<p class=\"about\">{html.escape(scenario.about)}</p>",
-             f"<p>{summary['runs']} runs with seeds from {summary['seed']} on; {summary['failed']} failed. "
-             "Medians with intervals by order statistics, shares with Wilson's, of the runs that gave a value. A criterion counts a "
-             "run without one as the worst there can be.</p>",
+             f"<p>{summary['runs']} runs, of each condition with the seeds {seeds(summary)}; {summary['failed']} failed. "
+             "Medians and shares of a condition are of the runs that gave a value; a criterion counts a run without one as the worst there "
+             f"can be, in its interval too. {INTERVALS}</p><p>Made by {html.escape(made_by(summary['made_by']))}.</p>",
              _criteria_rows(summary)]
     if hasattr(scenario.kind, "notes"):
         parts += [f"<p>{html.escape(line)}</p>" for line in scenario.kind.notes(results)]
@@ -221,22 +246,24 @@ def write(scenario, results, summary, out):
 
 def index(summaries, failed, missing, out):
     """One page of results over several experiments. failed: [(experiment, why)]; missing: names not yet run."""
-    rows = ["<tr><th>experiment</th><th>criterion</th><th>asked</th><th>found</th><th></th><th>runs</th><th>one core, s</th></tr>"]
+    rows = ["<tr><th>experiment</th><th>criterion</th><th>asked</th><th>found</th><th>95 % interval</th><th></th><th>runs</th><th>seeds</th>"
+            "<th>one core, s</th></tr>"]
     for s in summaries:
         for i, c in enumerate(s["criteria"]):
             first = i == 0
             name = f"<a href=\"{s['experiment']}/report.html\">{s['experiment']}</a>" if first else ""
-            count, cost = (f"{s['runs']}", f"{s['processor_s']:.0f}") if first else ("", "")
+            count, of, cost = (f"{s['runs']}", seeds(s), f"{s['processor_s']:.0f}") if first else ("", "", "")
             rows.append(f"<tr><td>{name}</td><td style=\"text-align:left\">{html.escape(claim(c))}</td><td>{limit(c)}</td>"
-                        f"<td>{found(c)}</td><td>{_verdict_cell(c)}</td><td>{count}</td><td>{cost}</td></tr>")
+                        f"<td>{found(c)}</td><td>{interval(c)}</td><td>{_verdict_cell(c)}</td><td>{count}</td><td>{of}</td><td>{cost}</td></tr>")
     for name, why in failed:
-        rows.append(f"<tr><td>{name}</td><td colspan=\"6\" style=\"text-align:left\"><span class=\"no\">could not be done:</span> "
+        rows.append(f"<tr><td>{name}</td><td colspan=\"8\" style=\"text-align:left\"><span class=\"no\">could not be done:</span> "
                     f"{html.escape(why)}</td></tr>")
     for name in missing:
-        rows.append(f"<tr><td>{name}</td><td colspan=\"6\" style=\"text-align:left\">not run yet</td></tr>")
+        rows.append(f"<tr><td>{name}</td><td colspan=\"8\" style=\"text-align:left\">not run yet</td></tr>")
     judged = [c["holds"] for s in summaries for c in s["criteria"] if c["counts"]]
     told = (f"{sum(judged)} of {len(judged)} criteria hold; {sum(s['runs'] for s in summaries)} runs took "
             f"{sum(s['processor_s'] for s in summaries) / 60:.1f} minutes of one core.")
+    made = "".join(f"<p>Made by {html.escape(line)}.</p>" for line in dict.fromkeys(made_by(s["made_by"]) for s in summaries))
     text = (f"<!DOCTYPE html><html lang=\"en\"><meta charset=\"utf-8\"><title>Experiments</title><style>{STYLE}</style>"
-            f"<h1>Experiments</h1><p>{told}</p><table>{''.join(rows)}</table></html>")
+            f"<h1>Experiments</h1><p>{told}</p><p>{INTERVALS}</p>{made}<table>{''.join(rows)}</table></html>")
     write_file(os.path.join(out, "index.html"), text + "\n")

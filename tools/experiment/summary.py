@@ -62,7 +62,7 @@ def summarise(scenario, results):
                            "equal": equal})
     criteria = [_judge(scenario, results, part) for c in scenario.criteria for part in _by_level(scenario, c)]
     return {"experiment": scenario.name, "title": scenario.title, "about": scenario.about, "kind": scenario.kind_name,
-            "seed": scenario.seed, "runs": len(results),
+            "seed": scenario.seed, "last_seed": max((r["seed"] for r in results), default=scenario.seed), "runs": len(results),
             "processor_s": round(sum(r["processor_s"] for r in results), 1), "failed": sum(1 for r in results if r["failure"]),
             "broken": sum(runner.is_broken(r) for r in results),
             "settings": scenario.settings, "vary": scenario.vary, "factors": scenario.factors, "compared": scenario.added,
@@ -109,12 +109,40 @@ def _judge(scenario, results, criterion):
             parts.append(_statistic(name, given + [missing] * (len(group) - len(given))))
         return None if None in parts else parts[0] - sum(parts[1:])
 
-    found, holds = None, True
+    found, holds, missing_are_high = None, True, None
     for limit, high in (("at_least", False), ("at_most", True)):
         if limit in criterion and holds:  # what is told is what did not hold
-            found = found_if(high)
+            found, missing_are_high = found_if(high), high
             holds = found is not None and (found <= criterion[limit] if high else found >= criterion[limit])
-    return {"measure": criterion["measure"], "statistic": name, "where": where, "less": less,
-            "found": found if found is not None and math.isfinite(found) else None, "n": sum(len(v) for v in values),
+    found = found if found is not None and math.isfinite(found) else None
+    low, high = _interval(name, criterion["measure"], groups, missing_are_high) if found is not None else (None, None)
+    return {"measure": criterion["measure"], "statistic": name, "where": where, "less": less, "found": found, "low": low, "high": high, "n": sum(len(v) for v in values),
             "of": sum(len(g) for g in groups), "at_most": criterion.get("at_most"), "at_least": criterion.get("at_least"),
             "holds": holds, "counts": _counts(scenario, groups, criterion)}
+
+
+def _interval(statistic, measure, groups, missing_are_high):
+    """(low, high) of 95 % for what a criterion found, None where it has no bound. Of one condition, or of two that share their seeds: runs
+    of more share seeds, and would seem more than they are. The least and the most have none, nor have runs that are equal."""
+    if any(len({json.dumps(r["condition"], sort_keys=True) for r in group}) != 1 for group in groups) or all(map(are_equal, groups)):
+        return None, None
+    columns = []  # {seed: value} of each group
+    for group, high in zip(groups, (missing_are_high, not missing_are_high)):
+        given = [(r["seed"], values_of([r], measure)) for r in group]
+        columns.append({seed: v[0] if v else math.inf if high else -math.inf for seed, v in given})
+    if len(columns) == 2 and columns[0].keys() != columns[1].keys():
+        return None, None
+    if statistic == "share":
+        columns = [{seed: v > 0.5 for seed, v in c.items()} for c in columns]
+    elif statistic == "mean" and any(math.isinf(v) for c in columns for v in c.values()):
+        return None, None
+    if len(columns) == 2:
+        pairs = [(v, columns[1][seed]) for seed, v in columns[0].items()]
+        of = {"median": ours.median_difference_interval, "share": ours.share_difference_interval,
+              "mean": lambda pairs: ours.mean_interval([a - b for a, b in pairs])}.get(statistic)
+        low, high = of(pairs)[1:] if of else (None, None)
+    else:
+        values = list(columns[0].values())
+        of = {"median": ours.median_interval, "mean": ours.mean_interval, "share": lambda v: ours.share_interval(sum(v), len(v))}.get(statistic)
+        low, high = of(values)[1:] if of else (None, None)
+    return tuple(v if v is not None and math.isfinite(v) else None for v in (low, high))
