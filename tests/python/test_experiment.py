@@ -60,6 +60,28 @@ class Outcomes(unittest.TestCase):
         asked = SimpleNamespace(runs=2, seed=None, set=[])
         made = outcomes.plans({"shark": shark}, asked)
         self.assertEqual([len(p.list_runs()) for p in made], [2 * len(k[1]) for k in outcomes.KNOBS])
+        for plan, knob in zip(made, outcomes.KNOBS):
+            self.assertIn(f"one knob turned: {knob[3]}. Its levels: {report.number(knob[1][0])}, ", plan.about)
+
+    def test_a_run_that_did_not_block_is_slower_than_any(self):
+        import outcomes
+        import provenance
+        import shark
+        sys.path.insert(0, os.path.join(TOOLS, "..", "plot"))  # the program does so
+        times = {60: [1.0 + 0.1 * i for i in range(10)], 120: [1.0 + 0.1 * i for i in range(6)] + [None] * 4, 240: [1.0] * 4 + [None] * 6}
+
+        def one(plan, out):
+            return [{"condition": {"physics_hz": hz}, "measures": {"blocked_in_3_s": t is not None, **({} if t is None else {"time_to_block_s": t})},
+                     "processor_s": 1.0} for hz, given in times.items() for t in given]
+        made = {"version": "neritic 0.1.0", "commit": None, "changed": None, "program": "feed"}
+        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.object(provenance, "of", lambda program: made), \
+                unittest.mock.patch.object(outcomes, "KNOBS", [("physics_hz", list(times), [], "physics, steps a second")]):
+            rows = outcomes.run({"shark": shark}, one, SimpleNamespace(out=folder, program="none", runs=10, seed=3, set=[]))
+            page = pathlib.Path(folder, "index.html").read_text()
+        self.assertEqual([[r[k] for k in ("time_low_s", "time_to_block_s", "time_high_s", "blocked_in_3_s")] for r in rows],
+                         [[1.1, 1.45, 1.8, 1.0], [1.1, 1.45, None, 0.6], [1.0, None, None, 0.4]])
+        for words in ("<td>half or more did not block</td><td>1 or more</td>", "seeds everywhere, 3 to 12", "neritic 0.1.0, commit unknown, program feed"):
+            self.assertIn(words, page)
 
 
 class Words(unittest.TestCase):
