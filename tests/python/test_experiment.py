@@ -739,13 +739,14 @@ class Measures(unittest.TestCase):
 class Tasks(unittest.TestCase):
     """A task's file and its controller, without a program."""
 
-    def made(self, task="", stages='[[stages]]\nname = "near"\nuntil = "time > 1"\n', player="", act="return None", sets=(), head=""):
+    def made(self, task="", stages='[[stages]]\nname = "near"\nuntil = "time > 1"\n', player="", act="return None", sets=(), head="",
+             scene='[[objects]]\nname = "rov"\n[[objects]]\nname = "diver"\n'):
         """The checked task of a scenario with these lines."""
         import task as kind
         folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, folder)
         self.folder = folder
-        for name, text in (("scene.toml", '[[objects]]\nname = "rov"\n[[objects]]\nname = "diver"\n'),
+        for name, text in (("scene.toml", scene),
                            ("act.py", f"class Controller:\n    def __init__(self, world, settings, seed):\n        pass\n\n    def act(self, obs, stage):\n        {act}\n"),
                            ("play.py", f"class Player:\n    def __init__(self, world, settings, seed):\n        pass\n\n    def act(self, obs, stage, told):\n        {player or 'pass'}\n"),
                            ("own.toml", '[experiment]\nkind = "task"\n' + head + '[task]\nscene = "scene.toml"\ncontroller = "act.py"\n'
@@ -927,6 +928,19 @@ wanted_m = "3 - share - 0.01 * heart(diver)"
         for name in scenario.names():
             if scenario.read(scenario.path_of(name))["experiment"]["kind"] == "task":
                 scenario.Scenario(scenario.path_of(name), {"task": kind.Task})
+
+    def test_a_signal_is_of_what_has_it(self):
+        task = 'participants = ["rov", "diver"]\n[task.places]\nbuoy = [6.0, 6.0, -8.0]\n'
+        stage = '[[stages]]\nname = "near"\nuntil = "{} < 1"\n'
+        for of in ("speed(buoy)", "facing(buoy, rov)", "touched(buoy)", "heart(buoy)", "breath(buoy)"):
+            self.refused(rf"stages\[0\]\.until: found {re.escape(of)}, whose buoy is a place in .*; accepted: one of diver, rov", task=task, stages=stage.format(of))
+        for of in ("facing(rov, buoy)", "distance(rov, buoy)", "along(diver, rov, buoy)", "depth(buoy)", "heart(diver)"):
+            self.made(task=task, stages=stage.format(of))
+        vehicle = {"scene": '[[vehicles]]\nname = "rov"\n[[objects]]\nname = "diver"\n',
+                   "task": 'participants = ["rov", "diver", "vehicle_1"]\n'}
+        for of, name in (("heart(rov)", "rov"), ("breath(vehicle_1)", "vehicle_1")):
+            self.refused(rf"until: found {re.escape(of)} in .*, but {name} is a vehicle; accepted: a diver with", stages=stage.format(of), **vehicle)
+        self.made(stages=stage.format("heart(diver) + speed(rov)"), **vehicle)
 
     def test_a_participant_that_the_scene_lacks_is_refused_before_it_runs(self):
         self.refused("scene.toml: found no participant shark; accepted: diver, rov", task='participants = ["rov", "shark"]')

@@ -42,6 +42,9 @@ class Questionnaires(unittest.TestCase):
                 self.assertEqual(len(counts), n * (n - 1))
                 self.assertEqual(len(set(counts.values())), 1)
 
+    def test_one_block_has_one_order(self):
+        self.assertEqual(questionnaires.latin_square(1), [[0]])
+
     def test_scores_at_the_ends_of_the_published_scales(self):
         worst = questionnaires.score_ssq([3] * 16)  # Kennedy et al. 1993: 200.34, 159.18, 292.32, 235.62
         np.testing.assert_allclose(list(worst.values()), [200.34, 159.18, 292.32, 235.62])
@@ -418,6 +421,10 @@ sys.exit(status)
                 self.write("plan.toml", self.PLAN + f"command = {command}\n")
                 status, text = self.study(*begin)
                 self.assertEqual((status, text.count("\n")), (2, 1), text)
+            self.write("plan.toml", self.PLAN.rsplit("[[blocks]]", 1)[0])
+            one, self.folder = self.folder, os.path.join(self.scratch, "one")
+            self.assertEqual(self.study(*begin), (0, f"{self.folder}: one block\n"))
+            self.folder = one
             self.write("plan.toml", self.PLAN.replace('name = "b"', 'name = "after"'))
             self.assertEqual(self.study(*begin)[0], 2)
             for i, command in enumerate(('["-q", "dive", "s.toml", "--record", "{record}.mcap", "--log={folder}/log.csv", "--task", "Look!"]',

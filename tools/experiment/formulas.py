@@ -73,29 +73,32 @@ def _along(m, a, b, c):
     return float((m.place(a) - m.place(b)) @ line / max(float(line @ line), 1e-12))
 
 
-# name: (function of the moment and the names, number of names, what it is)
+# Of a name that a signal takes: something with a place, a thing that moves, a diver with a human's body.
+PLACE, THING, BODY = "place", "thing", "body"
+# name: (function of the moment and the names, what each name has to be, what it is)
 SIGNALS = {
-    "distance": (lambda m, a, b: float(np.linalg.norm(m.place(a) - m.place(b))), 2, "m between two"),
-    "level_distance": (lambda m, a, b: float(np.hypot(*(m.place(a) - m.place(b))[:2])), 2, "m between two, level"),
-    "depth": (lambda m, a: -float(m.place(a)[2]), 1, "m below the surface"),
-    "east": (lambda m, a: float(m.place(a)[0]), 1, "m"),
-    "north": (lambda m, a: float(m.place(a)[1]), 1, "m"),
-    "speed": (lambda m, a: float(np.linalg.norm(m.truth(a).linear_velocity)), 1, "m/s over ground"),
-    "facing": (_facing, 2, "degrees between the first's way ahead and the second"),
-    "along": (_along, 3, "projection of the first on the line from the second to the third, a share of it"),
-    "beside": (_beside, 3, "m from the first to the line through the second and the third"),
-    "breath": (lambda m, a: m.body(a, "breath_bpm"), 1, "true breaths a minute of a diver with a human's body"),
-    "heart": (lambda m, a: m.body(a, "heart_bpm"), 1, "true beats of its heart a minute"),
-    "touched": (lambda m, a: float(m.truth(a).touched_steps), 1, "steps in which it touched something"),
+    "distance": (lambda m, a, b: float(np.linalg.norm(m.place(a) - m.place(b))), (PLACE, PLACE), "m between two"),
+    "level_distance": (lambda m, a, b: float(np.hypot(*(m.place(a) - m.place(b))[:2])), (PLACE, PLACE), "m between two, level"),
+    "depth": (lambda m, a: -float(m.place(a)[2]), (PLACE,), "m below the surface"),
+    "east": (lambda m, a: float(m.place(a)[0]), (PLACE,), "m"),
+    "north": (lambda m, a: float(m.place(a)[1]), (PLACE,), "m"),
+    "speed": (lambda m, a: float(np.linalg.norm(m.truth(a).linear_velocity)), (THING,), "m/s over ground"),
+    "facing": (_facing, (THING, PLACE), "degrees between the first's way ahead and the second"),
+    "along": (_along, (PLACE,) * 3, "projection of the first on the line from the second to the third, a share of it"),
+    "beside": (_beside, (PLACE,) * 3, "m from the first to the line through the second and the third"),
+    "breath": (lambda m, a: m.body(a, "breath_bpm"), (BODY,), "true breaths a minute of a diver with a human's body"),
+    "heart": (lambda m, a: m.body(a, "heart_bpm"), (BODY,), "true beats of its heart a minute"),
+    "touched": (lambda m, a: float(m.truth(a).touched_steps), (THING,), "steps in which it touched something"),
 }
 
 
 class Formula:
     """A checked text. Plain data but for its syntax tree, which is made anew in each process."""
 
-    def __init__(self, where, text, names, numbers):
-        """names: the participants; numbers: words that stand for numbers (settings, time, what the controller tells)."""
-        self.where, self.text = where, text
+    def __init__(self, where, text, names, numbers, places=()):
+        """names: the participants; places: names of fixed points; numbers: words that stand for numbers (settings, time, what the player
+        tells). bodies: [(signal, name)], of which a signal needs a human's body."""
+        self.where, self.text, self.bodies, self._places = where, text, [], set(places)
         if not isinstance(text, str):
             raise Refused(f"{where}: found {text!r}; accepted: a formula in quotes")
         try:
@@ -135,10 +138,15 @@ class Formula:
                 return
             if node.func.id not in SIGNALS:
                 self._refuse(f"\"{node.func.id}\"", ", ".join([*SIGNALS, *_NUMBERS]))
-            count = SIGNALS[node.func.id][1]
+            roles = SIGNALS[node.func.id][1]
             told = [a.id for a in node.args if isinstance(a, ast.Name)]
-            if len(told) != len(node.args) or len(told) != count or not set(told) <= names:
-                self._refuse(f"{node.func.id}({', '.join(told)})", f"{count} of {', '.join(sorted(names))}")
+            if len(told) != len(node.args) or len(told) != len(roles) or not set(told) <= names | self._places:
+                self._refuse(f"{node.func.id}({', '.join(told)})", f"{len(roles)} of {', '.join(sorted(names | self._places))}")
+            for name, role in zip(told, roles):
+                if role != PLACE and name in self._places:
+                    self._refuse(f"{node.func.id}({', '.join(told)}), whose {name} is a place", f"one of {', '.join(sorted(names)) or 'no participants'}")
+                if role == BODY:
+                    self.bodies.append((node.func.id, name))
         else:
             self._refuse(type(node).__name__, "numbers, comparisons, and, or, not, + - * / **, functions")
 

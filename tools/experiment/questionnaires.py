@@ -127,9 +127,9 @@ def _mean_of(name, turned, ends_sum):
 
 def latin_square(n):
     """Rows of orders in which each condition stands once at each place and, for even n, follows each other one once
-    (Williams 1949); for odd n the mirrored rows follow, so that both hold over 2 n rows."""
+    (Williams 1949); for odd n from 3 on the mirrored rows follow, so that both hold over 2 n rows."""
     first = [0]
     for k in range(1, n):
         first.append((k + 1) // 2 if k % 2 else n - k // 2)
     rows = [[(v + i) % n for v in first] for i in range(n)]
-    return rows if n % 2 == 0 else rows + [row[::-1] for row in rows]
+    return rows if n % 2 == 0 or n == 1 else rows + [row[::-1] for row in rows]

@@ -309,7 +309,8 @@ def begin(asked):
     orders = questionnaires.latin_square(len(plan["blocks"]))
     write_file(os.path.join(asked.folder, "study.json"),
                json.dumps({"format": max(JOINTS), "plan": plan, "orders": orders, "participants": {}}, indent=2) + "\n")
-    print(f"{asked.folder}: {len(plan['blocks'])} blocks in {len(orders)} orders; balanced after every {len(orders)} participants")
+    many = f"{len(plan['blocks'])} blocks in {len(orders)} orders; balanced after every {len(orders)} participants"
+    print(f"{asked.folder}: {many if len(orders) > 1 else 'one block'}")
 
 
 def enrol(asked, screen):

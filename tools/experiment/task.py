@@ -130,7 +130,7 @@ class Task(TaskFile):
 
     def check(self, settings):
         """Refuses a participant that the scene lacks, and a controller that is not there or is none, before anything runs."""
-        check_participants(self.scene, self.participants)
+        check_participants(self.scene, self.participants, self.formulas)
         path = self._controller_of(settings)
         if path is not None and not os.path.isfile(path):
             raise Refused(f"controller: found no file {path}; accepted: baseline, null, or a controller's .py")

@@ -42,6 +42,7 @@ class TaskFile:
         self._read_files(task)
         self.control_hz = _number(f"{path}: task.control_hz", task.get("control_hz", 20), 0.1, 1000)
         self.seconds = _number(f"{path}: task.seconds", task.get("seconds", 60), 0.1, MOST_SECONDS)
+        self.formulas = []
         self._things, self._numbers, self._results = _Names(), _Names(OWN_NUMBERS), _Names(OWN_RESULTS)
         self.participants = self._words("participants", task)
         for name in self.participants:
@@ -121,7 +122,8 @@ class TaskFile:
     def _formula(self, where, text):
         numbers = ["time", "stage_time", *self.tells, *(name for name, _ in getattr(self, "numbers", ())),
                    *(k for k, s in self.SETTINGS.items() if not isinstance(s.default, str))]
-        return Formula(where, text, self.participants + list(self.places), numbers)
+        self.formulas.append(Formula(where, text, self.participants, numbers, self.places))
+        return self.formulas[-1]
 
     def _read_stages(self, tables):
         path, self.stages = self.path, []
@@ -180,19 +182,24 @@ def _tables(where, value):
     return value
 
 
-def check_participants(scene, participants):
-    """Refuses a participant that the scene does not name, before the program opens it. Names that the program itself gives, as
-    object_0, pass."""
+def check_participants(scene, participants, formulas=()):
+    """Refuses a participant that the scene does not name, and a formula about the body of a vehicle, before the program opens it. Names
+    that the program itself gives, as object_0, pass."""
     names = _names_in(scene)
     for name in participants:
         if name not in names and not re.fullmatch(r"(object|vehicle)_\d+", name):
             raise Refused(f"{scene}: found no participant {name}; accepted: {', '.join(sorted(names)) or 'a scene that names it'}")
+    for formula in formulas:
+        for signal, name in formula.bodies:
+            if names.get(name, "vehicles" if name.startswith("vehicle_") else "") == "vehicles":
+                raise Refused(f"{formula.where}: found {signal}({name}) in \"{formula.text}\", but {name} is a vehicle; accepted: a diver "
+                              "with a human's body")
 
 
 def _names_in(path, depth=8):
-    """The names of a scene's objects and vehicles, with those of the files that it includes; at most 8 files deep, as the program
-    reads them."""
-    data, names = read(path), set()
+    """{name: "objects" or "vehicles"} of a scene, with those of the files that it includes; at most 8 files deep, as the program reads
+    them."""
+    data, names = read(path), {}
     folder = os.path.dirname(path)
 
     def included(table):
@@ -204,7 +211,7 @@ def _names_in(path, depth=8):
     for key in ("objects", "vehicles"):
         for table in data.get(key, []) if isinstance(data.get(key), list) else ():
             if isinstance(table, dict) and isinstance(table.get("name"), str):
-                names.add(table["name"])
+                names[table["name"]] = key
     return names
 
 
