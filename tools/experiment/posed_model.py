@@ -18,7 +18,8 @@ class Model:
     """A .glb file; triangles(clip, time_s) poses it. Metres, the file's axes."""
 
     def __init__(self, path):
-        data = open(path, "rb").read()
+        with open(path, "rb") as file:
+            data = file.read()
         length = struct.unpack_from("<I", data, 12)[0]
         self.json = json.loads(data[20:20 + length])
         self.binary = data[20 + length + 8:]
