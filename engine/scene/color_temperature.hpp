@@ -5,9 +5,10 @@
 
 namespace neritic::scene {
 
-// Linear sRGB of largest channel 1, over daylight of 6504 K, which is white: chromaticity of the
-// Planckian locus by Kim et al. 2002 (US patent 7024034, cubic splines, 1667 to 25000 K), and
-// sRGB's matrix (IEC 61966-2-1). Below 1667 K the spline of that.
+// Linear sRGB of luminance 1 (0.2126 R + 0.7152 G + 0.0722 B), so that candela and lumen stay what
+// they are; a channel may exceed 1. A body of 6504 K is white, [1, 1, 1]. Chromaticity of the
+// Planckian locus by Kim et al. 2002 (US patent 7024034, cubic splines, 1667 to 25000 K; beyond
+// these the nearer end), sRGB's matrix (IEC 61966-2-1), each channel over its value at 6504 K.
 Vec3f color_of_temperature(double kelvin);
 
 }  // namespace neritic::scene
