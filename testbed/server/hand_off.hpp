@@ -79,6 +79,7 @@ struct ServedFacts {
   bool real_time = false;
   std::vector<AgentInfo> agents;
   std::vector<StreamInfo> streams;
+  std::vector<std::string> objects;
 };
 
 }  // namespace neritic::testbed

@@ -45,7 +45,8 @@ json described(const ServedFacts& facts) {
   }
   return {{"protocol", kProtocol},        {"version", facts.version}, {"title", facts.title},
           {"path", facts.path},           {"seed", facts.seed},       {"step_s", facts.step_s},
-          {"real_time", facts.real_time}, {"agents", agents},         {"streams", streams}};
+          {"real_time", facts.real_time}, {"agents", agents},         {"streams", streams},
+          {"objects", facts.objects}};
 }
 
 // A source with its counts; null: not known.

@@ -43,7 +43,8 @@ ServedFacts facts_of(const World& world, bool real_time, const std::string& vers
           .step_s = world.step_s(),
           .real_time = real_time,
           .agents = world.agents(),
-          .streams = world.streams()};
+          .streams = world.streams(),
+          .objects = world.objects()};
 }
 
 void WorldServer::turn() {

@@ -324,4 +324,10 @@ GazeTargets::Seen PhysicsWorld::looks_at(const PhysicsState& state, std::size_t 
                             rov::world_from_ned(now.life.vitals.gaze_ned), time_s);
 }
 
+std::vector<std::string> PhysicsWorld::object_names() const {
+  std::vector<std::string> names;
+  for (const SolidObject& object : solid_objects_) names.push_back(object.name);
+  return names;
+}
+
 }  // namespace neritic::testbed

@@ -116,6 +116,8 @@ class PhysicsWorld {
   // The object of a label of solid(), and whether it is of class seabed.
   std::string solid_name(std::uint32_t label) const;
   bool is_bed(std::uint32_t label) const;
+  // Of the scene's objects, in their order: a reading's number n is that of place n - 1.
+  std::vector<std::string> object_names() const;
   std::uint64_t seed() const { return seed_; }
   double step_s() const { return step_s_; }
   const StepMethod& method() const { return method_; }

@@ -187,6 +187,9 @@ const std::vector<AgentInfo>& World::agents() const {
 const std::vector<StreamInfo>& World::streams() const {
   return parts_->streams;
 }
+std::vector<std::string> World::objects() const {
+  return parts_->world().object_names();
+}
 
 Result<std::uint32_t> World::stream(const std::string& name) const {
   const auto found = std::ranges::find(parts_->streams, name, &StreamInfo::name);

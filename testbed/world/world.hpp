@@ -162,6 +162,8 @@ class World {
   std::uint64_t hash() const;  // of the state
   const std::vector<AgentInfo>& agents() const;
   const std::vector<StreamInfo>& streams() const;
+  // Names of the scene's objects: a reading's number n (gaze_object, held) is that of place n - 1.
+  std::vector<std::string> objects() const;
   // kBadInput with the nearest name.
   Result<std::uint32_t> stream(const std::string& name) const;
   Result<std::size_t> agent(const std::string& name) const;

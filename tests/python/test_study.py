@@ -27,8 +27,6 @@ sys.path.insert(0, TOOLS)
 
 import questionnaires
 import scenario
-from eyes import eyes_and_face
-from human_state import HumanState
 
 
 class Questionnaires(unittest.TestCase):
@@ -497,98 +495,6 @@ sys.exit(status)
                 self.assertEqual((status, text.count("\n")), (2, 1), text)
                 self.assertIn(f"blocks[1].about: found {found}; accepted: text", text)
 
-
-class Diver(unittest.TestCase):
-    """human_state.py on samples of its own making."""
-
-    AT = {"ann": (0.0, 0.0, -5.0), "rov": (0.0, 10.0, -5.0)}
-
-    def world(self, joints=(), **at):
-        at = self.AT | at
-        return SimpleNamespace(agents=dict.fromkeys(at), truth=lambda name: SimpleNamespace(
-            time=20.0, position=at[name], orientation=(0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5)), joints=joints if name == "ann" else ()))
-
-    class Seen(dict):
-        time = 20.0
-
-    def seen(self, stamp, gaze=(0.0, 1.0, 0.0)):
-        """Of a diver who lies with the head to the north: the eyes are 0.7858 m north of the hips and 0.09 m below."""
-        motion = SimpleNamespace(stamp=stamp, breath_bpm=12.0, heart_bpm=math.nan, tank_pa=150e5, gaze=np.array(gaze),
-                                 position=(0.0, 0.0, -5.0), orientation=(0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5)))
-        return self.Seen({"ann/motion": motion})
-
-    def scene(self, text, **files):
-        folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, folder)
-        for name, content in {"scene": text, **files}.items():
-            pathlib.Path(folder, name + ".toml").write_text(content)
-        return os.path.join(folder, "scene.toml")
-
-    ANN = '[[objects]]\nname = "ann"\nhuman = "ann.toml"\n'
-
-    def test_each_value_has_its_quality(self):
-        human = HumanState(self.world(), "ann", self.scene(self.ANN, ann=""))
-        state = human.of(self.seen(19.9))
-        self.assertEqual(state["breath_bpm"][:2], (12.0, "good"))
-        self.assertEqual(state["gas_bar"].value, 150.0)
-        self.assertEqual(state["gaze_target"][:2], ("rov", "good"))
-        for name in ("heart_bpm", "depth_m", "rmssd_ms"):
-            self.assertEqual(state[name].quality, "missing", name)
-        self.assertEqual(human.of(self.seen(19.0))["breath_bpm"].quality, "stale")
-        self.assertIsNone(human.of(self.seen(19.9, gaze=(1.0, 0.0, 0.0)))["gaze_target"].value)
-
-    def test_what_a_device_may_have_measured_or_not_is_poor(self):
-        fed = self.ANN + 'inputs = { gaze = "headset", breath = { from = "microphone", then = "nobody" } }\n'
-        for scene, breath in ((self.scene(fed, ann=""), "poor"), (None, "poor"), (self.scene(self.ANN + 'inputs = { heart = "strap" }\n', ann=""), "good")):
-            human = HumanState(self.world(), "ann", scene)
-            self.assertEqual(human.of(self.seen(19.9))["breath_bpm"].quality, breath)
-        # The face of a straight body that lies looks down; a gaze that goes there may be that of nobody.
-        human = HumanState(self.world(), "ann", self.scene(fed, ann=""))
-        self.assertEqual(human.of(self.seen(19.9))["gaze_target"].quality, "good")
-        down = human.of(self.seen(19.9, gaze=(0.0, 0.01, -1.0)))
-        self.assertEqual((down["gaze_target"][:2], down["gaze_off_deg"].quality), ((None, "poor"), "poor"))
-
-    def test_the_line_of_sight_begins_at_the_eyes(self):
-        ahead = np.array([0.0, 0.8, -0.6])
-        for joints, eyes, face in (((), (0.0, 0.7858, -5.09), (0, 0, -1)),
-                                   # The neck bent to the back by a right angle: the crown is up, the face ahead.
-                                   ((0, 0, 0, 1, 0, 0, 0, 1, 0, -math.sqrt(0.5), 0, math.sqrt(0.5)), (0.0, 0.6238 + 0.09, -5.0 + 0.162), (0, 1, 0))):
-            human = HumanState(self.world(joints, rov=np.array(eyes) + 1.5 * ahead), "ann", self.scene(self.ANN, ann="height_m = 1.80"))
-            state = human.of(self.seen(19.9, gaze=ahead))
-            self.assertEqual(state["gaze_target"][:2], ("rov", "good"))
-            self.assertLess(state["gaze_off_deg"].value, 0.02)
-            found = eyes_and_face((0, 0, -5), (0, 0, math.sqrt(0.5), math.sqrt(0.5)), joints, 1.80)
-            np.testing.assert_allclose(found[0], eyes, atol=3e-4)
-            np.testing.assert_allclose(found[1], face, atol=1e-12)
-
-    def test_things_have_a_size_and_those_that_no_device_moves_are_seen_too(self):
-        wide = ('[[objects]]\nname = "wreck"\nshape = "box"\nsize_m = [6, 2, 4]\nposition_m = [20, -5, 0]\n'  # scene: east, up, south
-                '[[objects]]\nname = "bed"\nclass = "seabed"\nshape = "box"\nposition_m = [0, -5, 9]\n'
-                '[[objects]]\nname = "drifts"\nshape = "sphere"\nposition_m = [-9, -5, 0]\ntrack = { file = "x.csv" }\n')
-        outer = 'include = "wide.toml"\n' + self.ANN + '[[vehicles]]\nname = "rov"\ninclude = "rov.toml"\n'
-
-        def target(*place, **at):
-            """(target, its quality, degrees off) of a look at a place, east, north, up."""
-            human = HumanState(self.world(**at), "ann", self.scene(outer, wide=wide, ann="", rov='shape = "sphere"\nradius_m = 1.0\n'))
-            state = human.of(self.seen(19.9, gaze=np.array(place) - (0.0, 0.777, -5.089)))
-            return state["gaze_target"].value, state["gaze_target"].quality, round(state["gaze_off_deg"].value, 1)
-        self.assertEqual(target(0.9, 10, -5), ("rov", "good", 0.0))
-        self.assertEqual(target(2.3, 10, -5), (None, "good", 7.8))  # 14.0 degrees from the middle, less the 6.2 that its sphere spans
-        self.assertEqual(target(20, 1.5, -5), ("wreck", "good", 0.0))
-        for place in ((0, -9, -5), (-9, 0, -5)):  # the ground; what moves where nothing tells
-            self.assertIsNone(target(*place)[0])
-        # Two as near to the line of sight: the nearer, and poor.
-        self.assertEqual(target(20, 0, -5, rov=(10, 0.2, -5)), ("rov", "poor", 0.0))
-
-    def test_a_scenes_diver_and_sizes_are_read_with_their_files(self):
-        import scene_things
-        path = self.scene(self.ANN + f'model = "{os.path.join(scenario.SHIPPED, "..", "models", "shark.glb")}"\nscale = 2.0\n',
-                          ann='include = "base.toml"\nheight_m = 1.62\n', base='sex = "female"\nheight_m = 1.9\n')
-        person, thing = scene_things.person_of(path, "ann"), scene_things.things_of(path)["ann"]
-        self.assertEqual((person.height_m, person.sex, person.live), (1.62, "female", set()))
-        self.assertTrue(1.5 < thing.radius_m < 2.0, thing.radius_m)
-        with self.assertRaisesRegex(scenario.Refused, "found no object eve; accepted: ann"):
-            scene_things.person_of(path, "eve")
 
 if __name__ == "__main__":
     unittest.main()

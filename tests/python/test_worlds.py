@@ -31,7 +31,7 @@ MEASURED = str(ROOT / "assets/scenes/mission_measured.toml")
 
 
 class Divers(unittest.TestCase):
-    """tools/experiment/human_state.py in a world of its own."""
+    """neritic.human_state."""
 
     SCENE = f"""[physics]
 [[objects]]
@@ -50,36 +50,27 @@ radius_m = 0.2
 position_m = [3, -10, -6]
 """
 
-    def test_the_face_and_the_gaze_are_told_apart_and_things_are_seen_from_the_eyes(self):
-        sys.path.insert(0, str(ROOT / "tools/experiment"))
-        from eyes import eyes_and_face
-        from human_state import HumanState
+    def test_what_a_robot_knows_of_a_diver_has_its_quality(self):
         with tempfile.TemporaryDirectory() as folder:
             scene = os.path.join(folder, "scene.toml")
             Path(scene).write_text(self.SCENE)
-            world = neritic.open(scene, seed=1)
-            human = HumanState(world, "diver", scene)
-
-            def look():
-                motion, truth = world.observe()["diver/motion"], world.truth("diver")
-                return motion, *eyes_and_face(motion.position, motion.orientation, truth.joints, 1.80)
-            bent = np.tile([0.0, 0.0, 0.0, 1.0], (15, 1))
-            bent[0], bent[1], bent[2] = [0, 0.1, 0.05, 0.99], [0.1, 0.1, 0, 0.99], [0, -0.5, 0.2, 0.8]
-            bent /= np.linalg.norm(bent, axis=1)[:, None]
-            for joints in (None, bent):
-                if joints is not None:
-                    world["diver"].joints(joints, hold=100.0)
-                state = human.of(world.tick(480))
-                motion, eyes, face = look()
-                np.testing.assert_allclose(motion.gaze, face, atol=1e-6)  # nobody looks yet: the model looks out of the face
-                self.assertEqual([state[k].quality for k in ("gaze_target", "heart_bpm", "breath_bpm")], ["poor", "poor", "good"])
-                self.assertLess(np.linalg.norm(eyes - motion.position), 0.5 * 1.80)
-            for aside_m, target in ((0.5, "shark"), (2.0, None)):
-                line = np.array([3.0 + aside_m, 6.0, -10.0]) - look()[1]
-                world.inject("diver/gaze", [world.time, *line / np.linalg.norm(line), 1, 0, 0, 0, 0], "python")
-                state = human.of(world.tick(12))
-                self.assertEqual(state["gaze_target"][:2], (target, "good"))
-            world.close()
+            with neritic.open(scene, seed=1) as world:
+                self.assertEqual(world.objects, ["diver", "shark"])
+                state = neritic.human_state(world, world.tick(480))
+                self.assertEqual({name: value.quality for name, value in state.items()}, {
+                    "gaze_target": "lost", "gaze_off_deg": "lost", "gaze_distance_m": "lost", "breath_bpm": "modelled",
+                    "heart_bpm": "lost", "sdnn_ms": "missing", "rmssd_ms": "missing", "depth_m": "good", "ascent_m_min": "good",
+                    "gas_bar": "good"})
+                self.assertTrue(np.isnan(state["rmssd_ms"].value))
+                self.assertAlmostEqual(state["depth_m"].value, 10.0, delta=0.3)
+                self.assertLess(state["gas_bar"].age_s, 0.11)
+                # The eyes are some 0.8 m north of the hips, of a diver who lies.
+                for aside_m, target in ((0.3, "shark"), (2.0, None)):
+                    line = np.array([3.0 + aside_m, 6.0, -10.0]) - np.array([0.0, 0.786, -10.09])
+                    world.inject("diver/gaze", [world.time, *line / np.linalg.norm(line), 1, 0, 0, 0, 0], "python")
+                    state = neritic.human_state(world, world.tick(48))
+                    self.assertEqual(state["gaze_target"][:2], (target, "good"))
+                self.assertEqual(neritic.human_state(world, world.tick(480))["gaze_target"].quality, "lost")
 
 
 class Worlds(unittest.TestCase):

@@ -281,6 +281,7 @@ void bind_world(py::module_& m) {
       .def_property_readonly("time", [](const PyWorld& self) { return self.get().time_s(); })
       .def_property_readonly("hash", [](const PyWorld& self) { return self.get().hash(); })
       .def_property_readonly("streams", [](const PyWorld& self) { return streams_of(self.get()); })
+      .def_property_readonly("objects", [](const PyWorld& self) { return self.get().objects(); })
       .def_property_readonly("agents", [](const PyWorld& self) { return agents_of(self.get()); })
       .def_property_readonly("dropped", [](const PyWorld& self) { return self.get().dropped(); })
       .def_property_readonly("recording",

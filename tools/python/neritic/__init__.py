@@ -13,12 +13,14 @@ x, y, z, w; SI units, radians. Times are simulated seconds.
 open(scene)       a World: tick, observations, agents, images, save, restore, record
 connect(address)  the same on a server, `neritic serve`
 vector(task)      thousands of environments at once, with Gymnasium's vector interface
+human_state(...)  what a robot may know of a diver, each value with its quality
 Error, BadInput   the exceptions, one line each
 """
 
 from . import _core
 from .agents import Agent, Diver, TrackedObject, Vehicle
 from .errors import BadInput, Error
+from .human import Value, human_state
 from .observations import MODEM_EVENTS, Image, Message, Observations, Reading, Stream, Truth
 from .remote import RemoteWorld, connect
 from .sources import Counts, Link, ServerCounts, Source
@@ -29,5 +31,6 @@ _core.set_errors(Error, BadInput)
 
 __all__ = [
     "Agent", "BadInput", "Counts", "Diver", "Error", "Image", "Link", "MODEM_EVENTS", "Message", "Observations", "Reading",
-    "RemoteWorld", "ServerCounts", "Source", "Stream", "TrackedObject", "Truth", "VectorEnv", "Vehicle", "World", "connect", "open", "vector",
+    "RemoteWorld", "ServerCounts", "Source", "Stream", "TrackedObject", "Truth", "Value", "VectorEnv", "Vehicle", "World", "connect", "human_state", "open",
+    "vector",
 ]

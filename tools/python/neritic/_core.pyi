@@ -43,6 +43,7 @@ class World:
     step: int
     time: float
     hash: int
+    objects: list[str]
     streams: list[tuple[str, str, str, str, str, list[tuple[str, int]], float, str]]
     agents: list[tuple[str, str, list[tuple[float, float]], bool, bool, int]]
     dropped: int

@@ -167,6 +167,7 @@ class Core:
                         for s in hello["streams"]]
         self.agents = [(a["name"], a["kind"], [tuple(pair) for pair in a["thruster_n"]],
                         a["takes_pwm"], a["has_mission"], a["modem"]) for a in hello["agents"]]
+        self.objects = hello["objects"]
         self._places = {stream[0]: i for i, stream in enumerate(self.streams)}
         self._newest: list[Row] = [((i, 0, 0, 0, 0), np.zeros(0)) for i in range(len(self.streams))]
         self._arrived: list[Row] = []

@@ -95,6 +95,11 @@ class World:
         return list(self._streams)
 
     @property
+    def objects(self) -> list[str]:
+        """Names of the scene's objects. A number in a reading (`gaze_object`, `held`) counts from 1 in this list; 0 is nothing."""
+        return list(self._core.objects)
+
+    @property
     def agents(self) -> Mapping[str, Agent]:
         """Vehicles, divers and objects that can be commanded, by name."""
         return dict(self._agents)
