@@ -1,11 +1,9 @@
 """Studies with people: orders, questionnaires, blocks, withdrawal, the wizard. Exit 77: skipped."""
 import json
-import math
 import os
 import pathlib
 import pty
 import re
-import shutil
 import signal
 import subprocess
 import sys
