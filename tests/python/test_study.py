@@ -94,10 +94,12 @@ class PersonsSide(unittest.TestCase):
 
 class FakeRobot:
     """What the wizard tells it, and when."""
-    name = "rov"
 
-    def __init__(self):
-        self.told = []
+    def __init__(self, name="rov"):
+        self.name, self.told, self.grips = name, [], []
+
+    def grip(self, choice):
+        self.grips.append(choice)
 
     def goto(self):
         pass
@@ -112,12 +114,18 @@ class FakeRobot:
 class Wizard(unittest.TestCase):
     """The console at a terminal of its own, with a fake robot."""
 
-    def session(self, *presses):
-        """(the robot's orders, markers) of keys and pauses."""
+    def session(self, *presses, robots=("rov",), grips=False, **flags):
+        """(the orders of the robot that has some, markers) of keys and pauses."""
         import wizard
-        robot, marks, (ours, theirs) = FakeRobot(), [], pty.openpty()
-        fake = SimpleNamespace(connect=lambda *_, **__: SimpleNamespace(agents={"rov": robot}, close=lambda: None),
-                                     Error=RuntimeError, BadInput=ValueError)
+        self.robots, marks, (ours, theirs) = [FakeRobot(name) for name in robots], [], pty.openpty()
+        streams = [SimpleNamespace(name=f"{name}/gripper") for name in robots if grips]
+        world = SimpleNamespace(agents={r.name: r for r in self.robots}, streams=streams, close=lambda: None)
+
+        def connect(address, **given):
+            self.connected = address, given
+            return world
+        fake = SimpleNamespace(connect=connect, Error=RuntimeError, BadInput=ValueError)
+        asked = SimpleNamespace(**{"program": "", **dict.fromkeys(("robot", "server", "key", "server_key", "speak")), **flags})
         before = wizard.Tools, sys.stdin, sys.stdout
 
         def play():
@@ -132,14 +140,47 @@ class Wizard(unittest.TestCase):
         sys.stdin, sys.stdout = os.fdopen(theirs, "r"), open(os.devnull, "w")
         try:
             player.start()
-            wizard.run(SimpleNamespace(program=""), "", lambda **what: marks.append(what))
+            wizard.run(asked, "", lambda **what: marks.append(what))
         finally:
             player.join()
             sys.stdin.close()
             sys.stdout.close()
             wizard.Tools, sys.stdin, sys.stdout = before
             os.close(ours)
-        return robot.told, marks
+        return next((r.told for r in self.robots if r.told), []), marks
+
+    def test_the_robot_and_the_server_are_chosen(self):
+        _, marks = self.session(0.2, "w", 0.3, robots=("one", "two"), robot="two", server="tcp://lab:5", key="w.secret", server_key="server.public")
+        self.assertEqual([bool(r.told) for r in self.robots], [False, True])
+        self.assertEqual(self.connected, ("tcp://lab:5", {"name": "wizard", "key": "w.secret", "server_key": "server.public"}))
+        self.assertEqual(marks[0], {"marker": "wizard begins", "robot": "two"})
+        self.session(0.3)
+        self.assertEqual(self.connected[0], "tcp://127.0.0.1:47910")
+        for robots, name, told in ((("one", "two"), None, "found 2 vehicles; accepted: --robot, one of one, two"),
+                                   (("one", "two"), "three", "--robot: found three; accepted: one, two"), ((), None, "has no vehicle")):
+            with self.assertRaisesRegex(scenario.Refused if robots else scenario.Failed, told):
+                self.session(robots=robots, robot=name)
+
+    def test_the_gripper_closes_and_opens_and_is_given_back(self):
+        _, marks = self.session(0.2, "g", 0.2, "o", 0.2, "0", 0.2, grips=True)
+        self.assertEqual(self.robots[0].grips, ["close", "open", "auto", "auto"])
+        self.assertEqual([m["gripper"] for m in marks if m["marker"] == "wizard grips"], ["close", "open"])
+        _, marks = self.session(0.2, "g", 0.2)
+        self.assertEqual((self.robots[0].grips, [m for m in marks if m["marker"] == "wizard grips"]), ([], []))
+
+    def test_a_program_says_the_phrases(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = os.path.join(folder, "said")
+            speaks = f"{sys.executable} -c 'import sys; open(sys.argv[1], \"a\").write(sys.argv[2] + chr(10)); sys.exit(\"wait\" in sys.argv[2])' {out}"
+            _, marks = self.session(0.2, "1", 0.5, "2", 1.0, speak=speaks)
+            self.assertEqual(pathlib.Path(out).read_text(), "come here\nwait\n")
+            self.assertEqual([(m["marker"], m["phrase"], m.get("spoken")) for m in marks if "phrase" in m],
+                             [("wizard says", "come here", True), ("wizard says", "wait", True), ("wizard was not heard", "wait", None)])
+        _, marks = self.session(0.2, "1", 0.3)
+        self.assertEqual([m["spoken"] for m in marks if m["marker"] == "wizard says"], [False])
+        for wrong in ("no_such_program_here -x", "", "'"):
+            with self.assertRaisesRegex(scenario.Refused, "--speak: found .*; accepted"):
+                self.session(speak=wrong)
 
     def test_keys_that_come_at_once_are_all_taken(self):
         _, marks = self.session(0.3, "135", 0.5)
@@ -476,7 +517,7 @@ sys.exit(status)
         with tempfile.TemporaryDirectory() as self.scratch:
             self.folder = os.path.join(self.scratch, "study")
             for words, told in ((("beginn",), "beginn"), (("run",), "no participant"), (("run", "P01"), "no study"), (("begin",), "found no --plan"),
-                                (("begin", "--plan", "none.toml"), "none.toml"), (("ask", "P01", "mood"), "no study")):
+                                (("begin", "--plan", "none.toml"), "none.toml"), (("run", "P01", "--robot", "rov"), "found --robot; accepted: of wizard alone"), (("ask", "P01", "mood"), "no study")):
                 status, text = self.study(*words)
                 self.assertEqual((status, text.count("\n")), (2, 1), text)
                 self.assertIn(told, text)

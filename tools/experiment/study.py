@@ -524,11 +524,19 @@ def main():
     parser.add_argument("text", nargs="?")
     parser.add_argument("--plan")
     parser.add_argument("--answers", help="a file of answers, one a line, in place of the keyboard: for rehearsals")
-    parser.add_argument("--yes", action="store_true")
+    parser.add_argument("--yes", action="store_true", help="of withdraw: erases without asking")
+    parser.add_argument("--robot", metavar="NAME", help="of wizard: the vehicle that it flies, where the scene has several")
+    parser.add_argument("--server", metavar="ADDRESS", help="of wizard: where the dive is served [tcp://127.0.0.1:47910]")
+    parser.add_argument("--key", metavar="FILE", help="of wizard: its own NAME.secret of `neritic keys`")
+    parser.add_argument("--server-key", metavar="FILE", help="of wizard: the server's server.public")
+    parser.add_argument("--speak", metavar="COMMAND", help="of wizard: a program that says phrases, each its last word, as \"spd-say --wait\"")
     endings.listen()
     try:
         asked = parser.parse_args()
         screen = Screen(asked.answers)
+        for flag in ("robot", "server", "key", "server_key", "speak"):
+            if getattr(asked, flag) is not None and asked.what != "wizard":
+                raise Refused(f"study {asked.what}: found --{flag.replace('_', '-')}; accepted: of wizard alone")
         if asked.what in ("run", "ask", "mark", "withdraw", "wizard") and not asked.who:
             raise Refused(f"study {asked.what}: found no participant; accepted: one's pseudonym, as P01")
         if asked.what == "begin":

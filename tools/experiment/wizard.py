@@ -1,26 +1,80 @@
-"""A Wizard of Oz's console: an experimenter in another room flies the robot of a served dive by keys, unseen, and speaks for
-it by numbered phrases. Each key is a marker. From the first key that flies on the robot is the wizard's until 0: without a key it
-stays where it is. `neritic serve SCENE --realtime` or `neritic dive SCENE --serve` beside it; keys go through a terminal."""
+"""A Wizard of Oz's console: an experimenter in another room flies the robot of a served dive by keys, unseen, works its gripper and
+speaks for it by numbered phrases: a program of the experimenter's says them (--speak), or the experimenter does. Each key is a marker.
+From the first key that flies on the robot is the wizard's until 0: without a key it stays where it is. `neritic serve SCENE --realtime`
+or `neritic dive SCENE --serve` beside it; keys go through a terminal."""
 import math
 import os
 import select
+import shlex
+import shutil
+import subprocess
 import sys
 import termios
 import time
 import tty
 
 from runner import Tools
-from scenario import Failed
+from scenario import Failed, Refused
 
-ADDRESS = "tcp://127.0.0.1:47910"
+ADDRESS = "tcp://127.0.0.1:47910"  # of neritic serve and dive --serve
 SPEED_M_S, TURN_RAD_S, TELL_HZ, HOLD_S = 0.4, math.radians(30), 10.0, 1.0
 STILL = [0.0, 0.0, 0.0, 0.0]
 # key: forward, left, up, turn to port
 KEYS = {"w": (1, 0, 0, 0), "s": (-1, 0, 0, 0), "a": (0, 1, 0, 0), "d": (0, -1, 0, 0), "r": (0, 0, 1, 0), "f": (0, 0, -1, 0),
         "q": (0, 0, 0, 1), "e": (0, 0, 0, -1)}
 PHRASES = {"1": "come here", "2": "wait", "3": "look there", "4": "go up", "5": "well done"}
-HELP = ("w s forward, back; a d to the sides; r f up, down; q e turn; space stop and stay; 1-5: " + ", ".join(PHRASES.values())
-        + "; 0 gives the robot back; x ends")
+GRIPS = {"g": "close", "o": "open"}
+
+
+def help_of(robot, grips, speaks):
+    return (f"{robot}: w s forward, back; a d to the sides; r f up, down; q e turn; space stop and stay; "
+            + ("g o close, open the gripper; " if grips else "")
+            + f"1-5 {'' if speaks else 'are markers of what you say: '}{', '.join(PHRASES.values())}; 0 gives the robot back; x ends")
+
+
+class Voice:
+    """Says phrases by a program of the experimenter's, which gets each as its last word; one after the other is not waited for."""
+
+    def __init__(self, command):
+        """command: its words in one text, as of a shell; None: nobody says anything."""
+        try:
+            self.words = shlex.split(command or "")
+        except ValueError as error:
+            raise Refused(f"study wizard: --speak: found {command!r} ({error}); accepted: a program and its words") from None
+        if command is not None and (not self.words or shutil.which(self.words[0]) is None):
+            raise Refused(f"study wizard: --speak: found no program {command!r}; accepted: one that speaks its last word, as \"spd-say --wait\"")
+        self.speaks = []
+
+    def say(self, phrase):
+        if self.words:
+            self.speaks.append((phrase, subprocess.Popen([*self.words, phrase], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                                         stderr=subprocess.DEVNULL)))
+
+    def failures(self):
+        """Phrases whose program has ended with another status than 0 since the last call."""
+        ended = [s for s in self.speaks if s[1].poll() is not None]
+        self.speaks = [s for s in self.speaks if s not in ended]
+        return [phrase for phrase, program in ended if program.returncode != 0]
+
+    def close(self):
+        for _, program in self.speaks:
+            try:
+                program.wait(10.0)
+            except subprocess.TimeoutExpired:
+                program.kill()
+                program.wait()
+
+
+def robot_of(world, name):
+    """The vehicle of this name; without one, the only vehicle."""
+    robots = {a.name: a for a in world.agents.values() if hasattr(a, "goto")}
+    if not robots:
+        raise Failed("study wizard: the served scene has no vehicle")
+    if name is None and len(robots) > 1:
+        raise Refused(f"study wizard: found {len(robots)} vehicles; accepted: --robot, one of {', '.join(robots)}")
+    if name is not None and name not in robots:
+        raise Refused(f"study wizard: --robot: found {name}; accepted: {', '.join(robots)}")
+    return robots[name] if name is not None else next(iter(robots.values()))
 
 
 def way_of(pressed, at):
@@ -46,15 +100,24 @@ def keys_waiting(terminal):
 def run(asked, place, note):
     if not sys.stdin.isatty():
         raise Failed("study wizard: the input is no terminal; accepted: a terminal, for single keys")
-    neritic = Tools(asked.program, place).python()
+    voice, neritic = Voice(asked.speak), Tools(asked.program, place).python()
     try:
-        world = neritic.connect(os.environ.get("NERITIC_SERVER", ADDRESS), name="wizard")
-        robot = next(a for a in world.agents.values() if hasattr(a, "goto"))
-    except StopIteration:
-        raise Failed("study wizard: the served scene has no vehicle") from None
+        world = neritic.connect(asked.server or ADDRESS, name="wizard", key=asked.key, server_key=asked.server_key)
     except (neritic.Error, neritic.BadInput) as error:
         raise Failed(f"study wizard: {error}") from None
-    print(HELP)
+    try:
+        robot = robot_of(world, asked.robot)
+        _play(world, robot, voice, note)
+    except (neritic.Error, neritic.BadInput) as error:
+        raise Failed(f"study wizard: {error}") from None
+    finally:
+        voice.close()
+        world.close()
+
+
+def _play(world, robot, voice, note):
+    grips = any(stream.name == f"{robot.name}/gripper" for stream in world.streams)
+    print(help_of(robot.name, grips, bool(voice.words)), flush=True)
     note(marker="wizard begins", robot=robot.name)
     before, pressed, told = termios.tcgetattr(sys.stdin), {}, None
     tty.setcbreak(sys.stdin)
@@ -67,15 +130,23 @@ def run(asked, place, note):
                 if key in KEYS:
                     pressed[key] = time.monotonic()
                 elif key in PHRASES:
-                    note(marker="wizard says", phrase=PHRASES[key])
-                    print(f"said: {PHRASES[key]}", flush=True)
+                    note(marker="wizard says", phrase=PHRASES[key], spoken=bool(voice.words))
+                    voice.say(PHRASES[key])
+                    print(f"{'said' if voice.words else 'marked: say'}: {PHRASES[key]}", flush=True)
+                elif key in GRIPS and grips:
+                    robot.grip(GRIPS[key])
+                    note(marker="wizard grips", gripper=GRIPS[key])
+                    print(f"gripper: {GRIPS[key]}", flush=True)
                 elif key == " ":
                     pressed, told = {}, told or STILL
                     note(marker="wizard stops")
                 elif key == "0":
-                    robot.release()
+                    _give_back(robot, grips)
                     pressed, told = {}, None
                     note(marker="wizard releases")
+            for phrase in voice.failures():
+                note(marker="wizard was not heard", phrase=phrase)
+                print(f"not said, the program failed: {phrase}", flush=True)
             way = way_of(pressed, time.monotonic())
             if told is None and not any(way):
                 continue  # the robot's own
@@ -86,6 +157,11 @@ def run(asked, place, note):
             told = way
     finally:
         termios.tcsetattr(sys.stdin, termios.TCSADRAIN, before)
-        robot.release()
+        _give_back(robot, grips)
         note(marker="wizard ends")
-        world.close()
+
+
+def _give_back(robot, grips):
+    robot.release()
+    if grips:
+        robot.grip("auto")  # what it holds stays held
