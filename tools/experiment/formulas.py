@@ -144,7 +144,8 @@ class Formula:
                 self._refuse(f"{node.func.id}({', '.join(told)})", f"{len(roles)} of {', '.join(sorted(names | self._places))}")
             for name, role in zip(told, roles):
                 if role != PLACE and name in self._places:
-                    self._refuse(f"{node.func.id}({', '.join(told)}), whose {name} is a place", f"one of {', '.join(sorted(names)) or 'no participants'}")
+                    self._refuse(f"{node.func.id}({', '.join(told)}), whose {name} is a place",
+                                 f"one of {', '.join(sorted(names)) or 'no participants'}")
                 if role == BODY:
                     self.bodies.append((node.func.id, name))
         else:

@@ -59,9 +59,9 @@ def run(kinds, one, asked):
             blocked = sum(1 for r in of if r["measures"].get("blocked_in_3_s"))
             share, share_low, share_high = intervals.share_interval(blocked, len(of))
             worked = sorted(r["processor_s"] for r in of)
-            rows.append({"knob": knob, "level": level, "seed": plan.seed, "last_seed": plan.seed + plan.runs - 1, "runs": len(of), "time_to_block_s": middle, "time_low_s": low,
-                         "time_high_s": high, "blocked_in_3_s": share, "share_low": share_low, "share_high": share_high,
-                         "processor_s": worked[len(worked) // 2]})
+            rows.append({"knob": knob, "level": level, "seed": plan.seed, "last_seed": plan.seed + plan.runs - 1, "runs": len(of),
+                         "time_to_block_s": middle, "time_low_s": low, "time_high_s": high, "blocked_in_3_s": share,
+                         "share_low": share_low, "share_high": share_high, "processor_s": worked[len(worked) // 2]})
     _write(rows, asked.out, provenance.of(asked.program))
     return rows
 

@@ -116,8 +116,8 @@ def _judge(scenario, results, criterion):
             holds = found is not None and (found <= criterion[limit] if high else found >= criterion[limit])
     found = found if found is not None and math.isfinite(found) else None
     low, high = _interval(name, criterion["measure"], groups, missing_are_high) if found is not None else (None, None)
-    return {"measure": criterion["measure"], "statistic": name, "where": where, "less": less, "found": found, "low": low, "high": high, "n": sum(len(v) for v in values),
-            "of": sum(len(g) for g in groups), "at_most": criterion.get("at_most"), "at_least": criterion.get("at_least"),
+    return {"measure": criterion["measure"], "statistic": name, "where": where, "less": less, "found": found, "low": low, "high": high,
+            "n": sum(len(v) for v in values), "of": sum(len(g) for g in groups), "at_most": criterion.get("at_most"), "at_least": criterion.get("at_least"),
             "holds": holds, "counts": _counts(scenario, groups, criterion)}
 
 

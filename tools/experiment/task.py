@@ -3,8 +3,8 @@ README.md lists its keys.
 
 The controller is a Python file with a class Controller: __init__(self, world, settings, seed) and
 act(self, observations, stage), called control_hz times a second: each time at the first step of the physics that is not before it is
-due, so that calls may be a step more or less apart where control_hz does not divide the physics' rate; world.time is exact. It returns a dict of the numbers that it says to the player, or
-None. A player, a class Player of the same form, plays people and props by rules and judges, so that controllers can be compared:
+due, so that calls may be a step more or less apart where control_hz does not divide the physics' rate; world.time is exact. It returns
+a dict of the numbers that it says to the player, or None. A player, a class Player of the same form, plays people and props by rules and judges, so that controllers can be compared:
 its act has a third argument, what the controller said last, and is called first; formulas may name the numbers that it returns.
 The controller has these as self.told, and the player itself as self.player.
 """
