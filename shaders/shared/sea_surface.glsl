@@ -238,11 +238,15 @@ float foam_at(SeaPoint point, vec2 at) {
   return smoothstep(-0.05, 0.35, point.crest + 0.5 * (torn - 0.7)) * smoothstep(0.25, 0.6, torn);
 }
 
-// Radiance of the deep that the surface mirrors down a direction: endless water, lit from the surface.
+// Radiance of the deep that the surface mirrors down a direction: the water, and the bottom where its depth is named;
+// else endless water. Objects are not mirrored.
 vec3 deep_below(vec3 down) {
-  if (!light_has(kLightScattering) || !light_has(kLightSun)) return vec3(0.0);
-  vec3 rate = light.beam_attenuation - light.diffuse_attenuation * down.y;
-  return scattered_towards(down, light.surface_irradiance, vec3(light.direct_share)) / (rate + 1e-9);
+  if (!light_has(kLightScattering) && !light_has(kLightAmbient)) return vec3(0.0);
+  bool has_bottom = light_has(kLightAmbient) && light.bottom_depth_m >= 0.0;
+  Sight sight = look_through(0.0, down, has_bottom ? light.bottom_depth_m / max(-down.y, 1e-3) : kForever_m);
+  if (!has_bottom) return sight.added;
+  vec3 bottom = downwelling(light.bottom_depth_m) * light.bottom_color / kPi;
+  return sight.added + bottom * sight.transmittance;
 }
 
 // Light that one facet of the surface sends down against a sight upwards. beam: the sun's in air.

@@ -24,7 +24,10 @@ struct SurfaceLook {
   std::uint32_t side = 17;
   bool scattering = false;
   std::optional<double> wind_m_s;
+  std::optional<double> bottom_depth_m;
 };
+
+const Vec3f kBottomColor(0.4f, 0.5f, 0.6f);
 
 scene::Scene surface_scene(const SurfaceLook& look) {
   scene::Scene scene;
@@ -32,6 +35,9 @@ scene::Scene surface_scene(const SurfaceLook& look) {
   scene.sun = scene::Sun{.elevation_rad = look.sun_rad, .azimuth_rad = look.sun_azimuth_rad};
   scene.water = scene::Water{.type = "IB", .scattering = look.scattering, .surface = true};
   if (look.wind_m_s) scene.water->waves = SeaState{.wind_m_s = *look.wind_m_s};
+  if (look.bottom_depth_m)
+    scene.ambient =
+        scene::Ambient{.bottom_color = kBottomColor, .bottom_depth_m = *look.bottom_depth_m};
   scene::Camera camera;
   camera.name = "eye";
   camera.width = camera.height = look.side;
@@ -91,15 +97,18 @@ double surface_fresnel(double cos_in_air) {
   return 0.5 * (rs * rs + rp * rp);
 }
 
-// Illuminance of the sun's beam in air on what faces it, lux: what has passed the surface, over
-// Fresnel's share of it.
-Result<Vec3> beam_lx(gpu::Device& device, const SurfaceLook& look) {
+Result<shared::Lighting> lighting_of(gpu::Device& device, const SurfaceLook& look) {
   const scene::Scene scene = surface_scene(look);
   NERITIC_TRY(const auto session, Session::create(device, scene));
   const render::FrameState state =
       render::evaluate_frame(scene, session->gpu_scene(), 0.0, 0.1, false);
-  NERITIC_TRY(const shared::Lighting light,
-              render::make_lighting(scene, state, Vec3(0.0), {}, false));
+  return render::make_lighting(scene, state, Vec3(0.0), {}, false);
+}
+
+// Illuminance of the sun's beam in air on what faces it, lux: what has passed the surface, over
+// Fresnel's share of it.
+Result<Vec3> beam_lx(gpu::Device& device, const SurfaceLook& look) {
+  NERITIC_TRY(const shared::Lighting light, lighting_of(device, look));
   const double sine = std::sin(look.sun_rad);
   return Vec3(light.surface_irradiance) * double(light.direct_share) /
          ((1.0 - surface_fresnel(sine)) * sine);
@@ -127,6 +136,30 @@ TEST_F(SurfacePicture, FlatWaterShowsTheSkyWithinSnellsWindowAndMirrorsTheDeepOu
       EXPECT_NEAR(seen.middle()[ch] / sky.middle()[ch] / wanted, 1.0, 0.02) << zenith_deg;
     }
   }
+}
+
+// In water that does not scatter the mirrored bottom is light that comes down by K_d, leaves it
+// evenly, and comes back by c along the sight's way up to the surface and down to the eye.
+TEST_F(SurfacePicture, OutsideSnellsWindowFlatWaterMirrorsTheNamedBottom) {
+  NERITIC_ASSERT_OK(const render::WaterOptics optics, render::jerlov_optics("IB"));
+  for (const double bottom_m : {3.0, 6.0})
+    for (const double zenith_deg : {52.0, 65.0, 75.0}) {
+      const double zenith = radians(zenith_deg);
+      SurfaceLook look{.height_m = -0.3,
+                       .pitch_rad = 0.5 * kPi - zenith,
+                       .fov_rad = 1e-3,
+                       .ev = 10.0,
+                       .bottom_depth_m = bottom_m};
+      NERITIC_ASSERT_OK(const SurfaceRadiances seen, surface_radiances(device(), look));
+      NERITIC_ASSERT_OK(const shared::Lighting light, lighting_of(device(), look));
+      for (int ch = 0; ch < 3; ++ch) {
+        const double sight_m = (bottom_m + 0.3) / std::cos(zenith);
+        const double wanted = double(light.surface_irradiance[ch]) * kBottomColor[ch] / kPi *
+                              std::exp(-optics.diffuse_attenuation_m[ch] * bottom_m -
+                                       optics.beam_attenuation_m()[ch] * sight_m);
+        EXPECT_NEAR(seen.middle()[ch] / wanted, 1.0, 0.02) << zenith_deg << " " << bottom_m;
+      }
+    }
 }
 
 TEST_F(SurfacePicture, FlatWaterMirrorsTheSkyAboveByFresnel) {
