@@ -9,14 +9,24 @@
 namespace neritic::testbed {
 namespace {
 
-bool leaves(const Stream& stream) {
-  switch (stream.kind) {
+// Of a vehicle's file; a USBL may also be a modem's.
+bool is_sensor(PayloadKind kind) {
+  switch (kind) {
     case PayloadKind::kImu:
     case PayloadKind::kDvl:
     case PayloadKind::kPressure:
     case PayloadKind::kCompass:
     case PayloadKind::kAltimeter:
     case PayloadKind::kUsbl:
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool leaves(const Stream& stream) {
+  if (is_sensor(stream.kind)) return true;
+  switch (stream.kind) {
     case PayloadKind::kCollision:
     case PayloadKind::kMotion:
     case PayloadKind::kComputer:
@@ -54,6 +64,15 @@ auto with_reading(PayloadKind kind, const rov::SensorReadings& readings, const V
   }
 }
 
+Payload payload_of(PayloadKind kind, const rov::SensorReadings& readings) {
+  return with_reading(kind, readings, [](const auto& reading) -> Payload {
+    if constexpr (std::is_same_v<decltype(reading.value), double>)
+      return CompassReading{reading.value};
+    else
+      return reading.value;
+  });
+}
+
 constexpr double kLongAgo_s = -1e9;
 
 TimeNs to_ns(double seconds) {
@@ -75,7 +94,13 @@ OutputSamples::OutputSamples(const PhysicsWorld& world, const std::vector<Stream
     NERITIC_CHECK(leaves(world.streams()[id]), "stream {} enters", world.streams()[id].name);
     outputs_.push_back({id});
   }
-  samples_.reserve(outputs_.size() + world.modems().all().size() * sonar::ModemState::kKept);
+  std::size_t most = outputs_.size() + world.modems().all().size() * sonar::ModemState::kKept;
+  for (const Output& output : outputs_) {
+    const Stream& stream = world.streams()[output.stream];
+    if (is_sensor(stream.kind) && stream.sort == OwnerSort::kVehicle)
+      most += world.vehicles()[stream.owner].earlier;
+  }
+  samples_.reserve(most);
 }
 
 // Readings at 0, period_s, 2 period_s ..., each at the first step that is not before it.
@@ -108,10 +133,13 @@ OutputSamples::Made OutputSamples::made(const Stream& stream,
     const auto& fix = snapshot.state.modem_tasks()[*modem].fix;
     return {fix.count, fix.time_s};
   }
-  return with_reading(stream.kind, *world_.readings(snapshot.state, stream.owner),
-                      [](const auto& reading) {
-                        return Made{reading.count, reading.time_s};
-                      });
+  return made(stream.kind, *world_.readings(snapshot.state, stream.owner));
+}
+
+OutputSamples::Made OutputSamples::made(PayloadKind kind, const rov::SensorReadings& readings) {
+  return with_reading(kind, readings, [](const auto& reading) {
+    return Made{reading.count, reading.time_s};
+  });
 }
 
 // The modem whose ranges the stream has.
@@ -168,33 +196,37 @@ Payload OutputSamples::payload(const Stream& stream, const sim::Snapshot<Physics
       return supply_reading(world_.humans(), stream.owner, state);
     return computer_reading(human, now);
   }
-  return with_reading(stream.kind, *world_.readings(state, stream.owner),
-                      [](const auto& reading) -> Payload {
-                        if constexpr (std::is_same_v<decltype(reading.value), double>)
-                          return CompassReading{reading.value};
-                        else
-                          return reading.value;
-                      });
+  return payload_of(stream.kind, *world_.readings(state, stream.owner));
+}
+
+// Adds the newest sample, or one of a part of the step, if it is not yet counted.
+template <class MakePayload>
+void OutputSamples::add(Output& output, const Made& now,
+                        const sim::Snapshot<PhysicsState>& snapshot, const MakePayload& payload) {
+  // At the first snapshot: those of its own step.
+  const bool due =
+      now.count != output.count && (begun_ || now.time_s > snapshot.time_s - world_.step_s());
+  output.count = now.count;
+  if (!due) return;
+  const TimeNs age_ns = to_ns(snapshot.time_s - now.time_s);
+  samples_.push_back(
+      {{output.stream, kSimulation, now.count - 1, snapshot.host_ns - age_ns, snapshot.host_ns},
+       payload()});
 }
 
 std::span<const Sample> OutputSamples::of(const sim::Snapshot<PhysicsState>& snapshot) {
   samples_.clear();
-  const double step_began_s = snapshot.time_s - world_.step_s();
   for (Output& output : outputs_) {
     const Stream& stream = world_.streams()[output.stream];
     if (stream.kind == PayloadKind::kModem) {
       add_reports(output, stream, snapshot);
       continue;
     }
-    const Made now = made(stream, snapshot);
-    // At the first snapshot: those of its own step.
-    const bool due = begun_ ? now.count != output.count : now.time_s > step_began_s;
-    output.count = now.count;
-    if (!due || now.count == 0) continue;
-    const TimeNs age_ns = to_ns(snapshot.time_s - now.time_s);
-    samples_.push_back(
-        {{output.stream, kSimulation, now.count - 1, snapshot.host_ns - age_ns, snapshot.host_ns},
-         payload(stream, snapshot)});
+    if (is_sensor(stream.kind) && !ranging_of(stream))
+      for (const EarlierReadings& earlier : world_.earlier_readings(snapshot.state, stream.owner))
+        add(output, made(stream.kind, earlier.readings), snapshot,
+            [&] { return payload_of(stream.kind, earlier.readings); });
+    add(output, made(stream, snapshot), snapshot, [&] { return payload(stream, snapshot); });
   }
   begun_ = true;
   return samples_;

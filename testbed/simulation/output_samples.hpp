@@ -28,10 +28,11 @@ class OutputSamples {
   // Borrows the world. Precondition: wanted is of all(world).
   OutputSamples(const PhysicsWorld& world, const std::vector<StreamId>& wanted);
 
-  // Each step in turn, the start (or a restored state) first. Valid until the next call; allocates
-  // nothing. The source is the simulation. The sequence number counts the readings of the run from
-  // 0, whenever one begins to ask: it follows from the state alone, so that every consumer reads
-  // the same samples. A step that was left out shows as a gap. Captured: the reading's own time;
+  // Each step in turn, the start (or a restored state) first. A sensor that is faster than the
+  // steps has all of its readings, in their order. Valid until the next call; allocates nothing.
+  // The source is the simulation. The sequence number counts the readings of the run from 0,
+  // whenever one begins to ask: it follows from the state alone, so that every consumer reads the
+  // same samples. A step that was left out shows as a gap. Captured: the reading's own time;
   // arrived: when the step was due; both on the clock that drives the steps.
   std::span<const Sample> of(const sim::Snapshot<PhysicsState>& snapshot);
 
@@ -46,6 +47,10 @@ class OutputSamples {
     double time_s = 0.0;
   };
   Made made(const Stream& stream, const sim::Snapshot<PhysicsState>& snapshot) const;
+  static Made made(PayloadKind kind, const rov::SensorReadings& readings);
+  template <class MakePayload>
+  void add(Output& output, const Made& now, const sim::Snapshot<PhysicsState>& snapshot,
+           const MakePayload& payload);
   std::optional<std::size_t> ranging_of(const Stream& stream) const;
   void add_reports(Output& output, const Stream& stream,
                    const sim::Snapshot<PhysicsState>& snapshot);

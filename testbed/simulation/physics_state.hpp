@@ -235,24 +235,40 @@ struct TetherState {
   }
 };
 
+// What a vehicle's sensors had read at the end of a part of the newest step, but its last: with
+// sensors faster than the steps, all of their readings stay here until the next step.
+struct EarlierReadings {
+  std::uint64_t kept = 0;  // 1: of the newest step; 0: free
+  rov::SensorReadings readings;
+
+  static void fields(auto&& field, auto& self) {
+    field("kept", self.kept);
+    field("readings", self.readings);
+  }
+};
+
 // The state of a scene's physics: one block, sized once from the scene (PhysicsWorld::start()).
 class PhysicsState
     : public sim::Block<VehicleState, HumanPhysics, rov::SensorReadings, rov::NavigationState,
                         ObjectState, sonar::ModemState, ModemTasks, diver::ConditionState,
                         RegulatorState, ThingState, GripState, LimbState, TetherState,
-                        rov::CableNode, rov::BatteryState> {
+                        rov::CableNode, rov::BatteryState, EarlierReadings> {
  public:
   PhysicsState() = default;
   // sensing: vehicles that have sensors; navigating: those that fly on what they measure; objects:
   // those that devices move; conditions, regulators: divers whose scene names them; limbs: objects
-  // with limbs; batteries: vehicles whose file names one.
+  // with limbs; batteries: vehicles whose file names one; earlier: of all vehicles.
   PhysicsState(std::size_t vehicles, std::size_t humans, std::size_t sensing,
                std::size_t navigating, std::size_t objects = 0, std::size_t modems = 0,
                std::size_t conditions = 0, std::size_t regulators = 0, std::size_t things = 0,
                std::size_t grips = 0, std::size_t limbs = 0, std::size_t tethers = 0,
-               std::size_t tether_nodes = 0, std::size_t batteries = 0)
+               std::size_t tether_nodes = 0, std::size_t batteries = 0, std::size_t earlier = 0)
       : Block({vehicles, humans, sensing, navigating, objects, modems, modems, conditions,
-               regulators, things, grips, limbs, tethers, tether_nodes, batteries}) {}
+               regulators, things, grips, limbs, tethers, tether_nodes, batteries, earlier}) {}
+  // One of each kind.
+  static PhysicsState example() {
+    return PhysicsState(1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1);
+  }
 
   std::span<VehicleState> vehicles() { return part<VehicleState>(); }
   std::span<const VehicleState> vehicles() const { return part<VehicleState>(); }
@@ -283,6 +299,9 @@ class PhysicsState
   // For the vehicles that have one: PhysicsWorld::battery() finds a vehicle's.
   std::span<rov::BatteryState> batteries() { return part<rov::BatteryState>(); }
   std::span<const rov::BatteryState> batteries() const { return part<rov::BatteryState>(); }
+  // One vehicle's after another's: PhysicsWorld::earlier_readings() finds a vehicle's.
+  std::span<EarlierReadings> earlier() { return part<EarlierReadings>(); }
+  std::span<const EarlierReadings> earlier() const { return part<EarlierReadings>(); }
   // For the divers whose condition the scene names: PhysicsHuman::condition finds a diver's.
   std::span<diver::ConditionState> conditions() { return part<diver::ConditionState>(); }
   std::span<const diver::ConditionState> conditions() const {
@@ -326,6 +345,8 @@ class PhysicsState
     field("tether_nodes", tether_nodes);
     auto batteries = self.batteries();
     field("batteries", batteries);
+    auto earlier = self.earlier();
+    field("earlier", earlier);
   }
   // The hash covers groups once a live source was asked for, and of the kinds after the first three
   // those that the scene has.
@@ -354,6 +375,8 @@ class PhysicsState
     if (!limbs.empty()) field("limbs", limbs);
     auto batteries = self.batteries();
     if (!batteries.empty()) field("batteries", batteries);
+    auto earlier = self.earlier();
+    if (!earlier.empty()) field("earlier", earlier);
     auto modems = self.modems();
     auto modem_tasks = self.modem_tasks();
     if (!modems.empty()) field("modems", modems), field("modem_tasks", modem_tasks);

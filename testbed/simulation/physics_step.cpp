@@ -34,6 +34,13 @@ void add_contact(const ContactReport& report, double dt_s, VehicleState& state) 
   contact.touched_steps += report.motion.touched ? 1 : 0;
 }
 
+// Of all sensors together; 0 without any.
+std::uint64_t readings_made(const rov::SensorReadings* r) {
+  return r ? r->imu.count + r->dvl.count + r->pressure.count + r->heading_rad.count +
+                 r->altimeter.count + r->usbl.count
+           : 0;
+}
+
 double time_at(const sim::StepTime& time, double share) {
   return (static_cast<double>(time.step) + share) * time.step_s;
 }
@@ -108,7 +115,7 @@ PhysicsState PhysicsWorld::start() const {
   PhysicsState state(vehicles_.size(), humans_.size(), sensing_, navigating_, objects_.size(),
                      modems_.all().size(), conditions_, regulators_, things_.things().size(),
                      things_.grips().size(), limbs_, tethers_.all().size(), tethers_.node_count(),
-                     batteries_);
+                     batteries_, earlier_);
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     state.vehicles()[i].body = vehicles_[i].start;
     if (const auto at = vehicles_[i].battery)
@@ -310,6 +317,8 @@ void PhysicsWorld::begin_vehicle(const StepCall& call, std::size_t i, unsigned t
   const VehicleInputs& inputs = call.inputs.vehicles()[i];
   own.parted = own.pulled = false;
   own.contact = {};
+  std::ranges::fill(call.after.earlier().subspan(vehicles_[i].first_earlier, vehicles_[i].earlier),
+                    EarlierReadings{});
   for (std::size_t k = 0; k < kVehicleGroups; ++k)
     state.groups[k] =
         next_group(state.groups[k], inputs.control[k], call.time.step, call.time.step_s);
@@ -423,7 +432,9 @@ void PhysicsWorld::end_part(const StepCall& call, std::size_t i, unsigned thread
     report.change_ned = report.change_ned + velocity_ned(own.free) - own.alone_ned;
   }
   const double to_s = time_at(call.time, own.part.to);
+  const std::uint64_t read = readings_made(readings(call.after, i));
   sense(i, felt(report, step.dt_s, state.body), to_s - step.dt_s, to_s, call.after);
+  if (own.part.to < 1.0) keep_readings(i, read, call.after);
   navigate(i, to_s, call.after);
   add_part(report, own.contact);
 }
@@ -465,6 +476,18 @@ void PhysicsWorld::sense(std::size_t index, const rov::Vec6& contact, double fro
         waves_->flow(rov::world_from_ned(state.vehicles()[index].body.position_ned_m), to_s).head_m;
   rov::update_readings(vehicle.file.sensors, world, vehicle.vehicle, state.vehicles()[index].body,
                        contact, from_s, to_s, state.readings()[*vehicle.readings]);
+}
+
+// Keeps what its sensors have read in this part of the step, whose next part may read anew.
+void PhysicsWorld::keep_readings(std::size_t index, std::uint64_t read_before,
+                                 PhysicsState& state) const {
+  const PhysicsVehicle& vehicle = vehicles_[index];
+  const rov::SensorReadings* now = readings(state, index);
+  if (vehicle.earlier == 0 || readings_made(now) == read_before) return;
+  const auto room = state.earlier().subspan(vehicle.first_earlier, vehicle.earlier);
+  const auto free = std::ranges::find(room, 0u, &EarlierReadings::kept);
+  NERITIC_CHECK(free != room.end(), "{}: {} readings of a step", vehicle.name, room.size());
+  *free = {1, *now};
 }
 
 rov::SensorWorld PhysicsWorld::sensor_world(std::size_t vehicle) const {

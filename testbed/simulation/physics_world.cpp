@@ -190,6 +190,9 @@ Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index) {
   NERITIC_TRY_STATUS(check_start(scene, out.name, kind->solid.shape,
                                  rov::world_pose(out.start.position_ned_m, out.start.attitude)));
   if (out.file.sensors.any()) out.readings = sensing_++;
+  out.first_earlier = earlier_;
+  out.earlier = earlier_in_step(out.file.sensors, step_s_);
+  earlier_ += out.earlier;
   if (out.file.parameters.battery) out.battery = batteries_++;
   NERITIC_TRY(auto navigation, choose_navigation(scene, object, out.file.sensors));
   if (navigation) out.navigation = VehicleNavigation{std::move(*navigation), navigating_++};
@@ -280,6 +283,14 @@ const rov::SensorReadings* PhysicsWorld::readings(const PhysicsState& state,
                                                   std::size_t vehicle) const {
   const auto& at = vehicles_[vehicle].readings;
   return at ? &state.readings()[*at] : nullptr;
+}
+
+std::span<const EarlierReadings> PhysicsWorld::earlier_readings(const PhysicsState& state,
+                                                                std::size_t vehicle) const {
+  const PhysicsVehicle& of = vehicles_[vehicle];
+  const auto room = state.earlier().subspan(of.first_earlier, of.earlier);
+  const auto kept = std::ranges::find(room, 0u, &EarlierReadings::kept);
+  return room.first(static_cast<std::size_t>(kept - room.begin()));
 }
 
 const rov::BatteryState* PhysicsWorld::battery(const PhysicsState& state,

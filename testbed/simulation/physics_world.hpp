@@ -47,7 +47,9 @@ struct PhysicsVehicle {
   std::optional<scene::Wash> wash;
   rov::State start;
   std::optional<std::size_t> readings;  // of PhysicsState::readings(); none: without sensors
-  std::optional<std::size_t> battery;   // of PhysicsState::batteries(); none: thrust costs nothing
+  // Of PhysicsState::earlier(); none: no sensor is faster than the steps.
+  std::size_t first_earlier = 0, earlier = 0;
+  std::optional<std::size_t> battery;  // of PhysicsState::batteries(); none: thrust costs nothing
   std::optional<VehicleNavigation> navigation;  // none: flies on its true state
   rov::SensorWater water;                       // around its sensors
 };
@@ -150,6 +152,10 @@ class PhysicsWorld {
   GazeTargets::Seen looks_at(const PhysicsState& state, std::size_t human, double time_s) const;
   // The newest readings of a vehicle's sensors; null where it has none.
   const rov::SensorReadings* readings(const PhysicsState& state, std::size_t vehicle) const;
+  // The readings of the newest step before those, the oldest first: of each part of the step in
+  // which a sensor read. Empty where no sensor is faster than the steps.
+  std::span<const EarlierReadings> earlier_readings(const PhysicsState& state,
+                                                    std::size_t vehicle) const;
   // The battery of a vehicle; null where its file names none.
   const rov::BatteryState* battery(const PhysicsState& state, std::size_t vehicle) const;
   // The motion of a vehicle as its own sensors estimate it; null, or absent: the vehicle flies on
@@ -189,6 +195,7 @@ class PhysicsWorld {
   bool steer(std::size_t index, const StepCall& call, double time_s) const;
   void sense(std::size_t index, const rov::Vec6& contact, double from_s, double to_s,
              PhysicsState& state) const;
+  void keep_readings(std::size_t index, std::uint64_t read_before, PhysicsState& state) const;
   VehicleStep whole_step(const StepCall& call, std::size_t i) const;
   VehicleStep part_step(const StepCall& call, std::size_t i) const;
   void begin_vehicle(const StepCall& call, std::size_t i, unsigned thread) const;
@@ -230,6 +237,7 @@ class PhysicsWorld {
   std::size_t conditions_ = 0, regulators_ = 0;  // divers whose scene names them
   std::size_t limbs_ = 0;                        // objects with limbs
   std::size_t batteries_ = 0;                    // vehicles whose file names one
+  std::size_t earlier_ = 0;                      // EarlierReadings of all vehicles
   StreamTable streams_;
   SourceNames sources_;
   PhysicsInputs start_inputs_;

@@ -15,7 +15,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they lie");
 
 constexpr std::string_view kMagic = "NRTCSAVE";
-constexpr std::uint32_t kVersion = 6;
+constexpr std::uint32_t kVersion = 7;
 
 struct Header {
   char magic[8];
@@ -114,7 +114,7 @@ Result<std::vector<std::string>> parse_names(std::span<const std::byte> bytes, s
 
 std::uint64_t StateFormat::layout_hash() const {
   Hash64 hash;
-  add_fields(hash, PhysicsState(1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1));
+  add_fields(hash, PhysicsState::example());
   add_fields(hash, PhysicsInputs(1, 1, 1, 1, 1, 1, 1));
   for (const std::uint64_t count : state.counts()) hash.add(count);
   for (const std::uint64_t count : inputs.counts()) hash.add(count);

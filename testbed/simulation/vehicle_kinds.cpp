@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "engine/core/files.hpp"
 #include "engine/core/hash.hpp"
@@ -35,13 +36,11 @@ std::uint64_t hash_of(const std::string& text, const rov::VehicleFile& file) {
   return hash.value();
 }
 
-// The instants of control first, then of each sensor.
-std::vector<Instants> instants_of(const rov::VehicleFile& file, double step_s) {
-  std::vector<Instants> out{{1.0 / file.gains.period_s, step_s}};
+std::vector<double> rates_hz(const rov::SensorSet& sensors) {
+  std::vector<double> out;
   const auto add = [&](const auto& sensor) {
-    if (sensor) out.emplace_back(sensor->rate_hz, step_s);
+    if (sensor) out.push_back(sensor->rate_hz);
   };
-  const rov::SensorSet& sensors = file.sensors;
   add(sensors.imu);
   add(sensors.dvl);
   add(sensors.pressure);
@@ -51,7 +50,25 @@ std::vector<Instants> instants_of(const rov::VehicleFile& file, double step_s) {
   return out;
 }
 
+// The instants of control first, then of each sensor.
+std::vector<Instants> instants_of(const rov::VehicleFile& file, double step_s) {
+  std::vector<Instants> out{{1.0 / file.gains.period_s, step_s}};
+  for (const double hz : rates_hz(file.sensors)) out.emplace_back(hz, step_s);
+  return out;
+}
+
 }  // namespace
+
+std::size_t earlier_in_step(const rov::SensorSet& sensors, double step_s) {
+  constexpr double kSlack = 1e-9;  // of a rate that is the steps'
+  std::size_t instants = 0;        // before the step's end
+  bool faster = false;
+  for (const double hz : rates_hz(sensors)) {
+    faster = faster || hz * step_s > 1.0 + kSlack;
+    instants += static_cast<std::size_t>(std::ceil(hz * step_s - kSlack));
+  }
+  return faster ? instants : 0;
+}
 
 Result<const VehicleModel*> VehicleKinds::model_of(const scene::Scene& scene,
                                                    const scene::Object& object, double step_s) {

@@ -52,4 +52,8 @@ class VehicleKinds {
   std::map<Key, std::unique_ptr<const VehicleKind>> kinds_;
 };
 
+// The most parts of a step but its last in which a sensor reads, where one is faster than the
+// steps; else 0, since each has one reading at most in a step.
+std::size_t earlier_in_step(const rov::SensorSet& sensors, double step_s);
+
 }  // namespace neritic::testbed

@@ -18,8 +18,8 @@ const StateFormat& format() {
   static const StateFormat format{7,
                                   1,
                                   1.0 / 240.0,
-                                  PhysicsState(2, 1, 1, 1, 1, 2, 1, 1, 1, 2, 1),
-                                  PhysicsInputs(2, 1, 1, 2, 1, 2, 1),
+                                  PhysicsState::example(),
+                                  PhysicsInputs(1, 1, 1, 1, 1, 1, 1),
                                   {"simulation"}};
   return format;
 }

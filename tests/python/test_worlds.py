@@ -189,6 +189,19 @@ class Worlds(unittest.TestCase):
             self.assertEqual(heard, list(range(heard[0], heard[0] + len(heard))))
             self.assertEqual(world.counts()["dropped_readings"], 0)
 
+    def test_a_sensor_faster_than_the_steps_loses_no_reading(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = Path(folder) / "slow.toml"
+            scene.write_text(f'include = "{MEASURED}"\n[physics]\nrate_hz = 60\n')
+            with neritic.open(str(scene), seed=1) as world:
+                heard = []
+                world.on("rov/imu", lambda reading: heard.append(reading))
+                world.tick(60)
+                self.assertEqual(len(heard), 200)
+                self.assertEqual([r.sequence for r in heard], list(range(1, 201)))
+                for reading in heard:
+                    self.assertAlmostEqual(reading.stamp, reading.sequence / 200, delta=2e-9)
+
     def test_ctrl_c_ends_a_tick_and_leaves_the_world(self):
         with neritic.open(MISSION, seed=1) as world, neritic.open(MISSION, seed=1) as other:
             threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()

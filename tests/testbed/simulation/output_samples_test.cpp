@@ -163,6 +163,108 @@ TEST(OutputSamples, EachStreamHasItsRateAndTheValuesOfTheLogWithoutGaps) {
   EXPECT_EQ(counts, expected);
 }
 
+// Every kind of sensor, all faster than steps of 60 Hz, above a bed.
+constexpr double kImu_hz = 1000, kDvl_hz = 90, kPressure_hz = 130, kCompass_hz = 333,
+                 kAltimeter_hz = 64, kUsbl_hz = 75;
+std::string fast_sensors(const test::ScratchFolder& folder, double physics_hz) {
+  const std::string table = read_text(vehicles_folder() + "/t200_thrust.csv").value();
+  EXPECT_TRUE(write_text(folder / "t200_thrust.csv", table).ok());
+  EXPECT_TRUE(
+      write_text(
+          folder / "fast.toml",
+          read_text(vehicles_folder() + "/bluerov2_heavy_dynamics.toml").value() +
+              fmt::format("\n[imu]\nrate_hz = {}\n[dvl]\nrate_hz = {}\n[pressure]\nrate_hz = "
+                          "{}\n[compass]\nrate_hz = {}\n[altimeter]\nrate_hz = {}\n"
+                          "[usbl]\nrate_hz = {}\n",
+                          kImu_hz, kDvl_hz, kPressure_hz, kCompass_hz, kAltimeter_hz, kUsbl_hz))
+          .ok());
+  return fmt::format("seed = 4\n[physics]\nrate_hz = {}\n", physics_hz) +
+         "[[objects]]\nname = \"sand\"\nclass = \"seabed\"\nshape = \"plane\"\nsize_m = [40, 40]\n"
+         "position_m = [0, -14, 0]\n[[vehicles]]\nname = \"rov\"\nshape = \"box\"\n"
+         "size_m = [0.57, 0.26, 0.46]\ndynamics = \"" +
+         (folder / "fast.toml").string() +
+         "\"\nposition_m = [3, -10, 0]\nnavigation = \"truth\"\n"
+         "mission = { waypoints = [ { position_m = [6, -9, -3] } ] }\n";
+}
+
+using Readings = std::map<std::string, std::vector<Sample>>;
+const std::map<std::string, double> kFastRates{{"rov/imu", kImu_hz},
+                                               {"rov/dvl", kDvl_hz},
+                                               {"rov/pressure", kPressure_hz},
+                                               {"rov/compass", kCompass_hz},
+                                               {"rov/altimeter", kAltimeter_hz},
+                                               {"rov/usbl", kUsbl_hz}};
+
+void take(Readings& readings, const PhysicsWorld& world, std::span<const Sample> samples) {
+  for (const Sample& sample : samples)
+    readings[world.streams()[sample.header.stream].name].push_back(sample);
+}
+
+// Each reading against that of steps of 1 kHz, in which no sensor reads twice.
+TEST(OutputSamples, SensorsFasterThanTheStepsLoseNoReading) {
+  const test::ScratchFolder folder;
+  const auto flown = [&](double physics_hz) {
+    const TestDive dive = dive_of(fast_sensors(folder, physics_hz));
+    OutputSamples outputs(*dive.world, OutputSamples::all(*dive.world));
+    Readings out;
+    take(out, *dive.world, outputs.of(dive.simulation->newest()));
+    const Sample* memory = outputs.of(dive.simulation->newest()).data();
+    while (dive.time_s() < 2.0 - 1e-9) {
+      dive.simulation->advance(1);
+      const auto samples = outputs.of(dive.simulation->newest());
+      EXPECT_EQ(samples.data(), memory);  // the same memory at each step
+      take(out, *dive.world, samples);
+    }
+    return out;
+  };
+  Readings slow = flown(60.0), fast = flown(1000.0);
+  for (const auto& [name, hz] : kFastRates) {
+    const std::vector<Sample>&a = slow[name], &b = fast[name];
+    ASSERT_EQ(a.size(), static_cast<std::size_t>(2.0 * hz) + 1) << name;
+    ASSERT_EQ(b.size(), a.size()) << name;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      ASSERT_EQ(a[i].header.sequence, i) << name;
+      ASSERT_NEAR(static_cast<double>(a[i].header.captured_ns), 1e9 * static_cast<double>(i) / hz,
+                  2.0)
+          << name;
+      ASSERT_LE(a[i].header.captured_ns, a[i].header.arrived_ns + 1) << name;
+      ASSERT_LT(a[i].header.arrived_ns - a[i].header.captured_ns, 16'666'670) << name;
+      if (const auto* imu = std::get_if<rov::ImuReading>(&a[i].payload)) {
+        const auto& other = std::get<rov::ImuReading>(b[i].payload);
+        ASSERT_LT(glm::distance(imu->angular_rad_s, other.angular_rad_s), 1e-3);
+      } else if (const auto* pressure = std::get_if<rov::PressureReading>(&a[i].payload)) {
+        ASSERT_NEAR(pressure->depth_m, std::get<rov::PressureReading>(b[i].payload).depth_m, 1e-3);
+      } else if (const auto* compass = std::get_if<CompassReading>(&a[i].payload)) {
+        ASSERT_NEAR(compass->heading_rad, std::get<CompassReading>(b[i].payload).heading_rad, 1e-3);
+      }
+    }
+  }
+}
+
+// Also in a run that goes on from a state in the middle, and for one who begins to ask there.
+TEST(OutputSamples, AllReadingsOfAStepAreInASavedState) {
+  const test::ScratchFolder folder;
+  const TestDive dive = dive_of(fast_sensors(folder, 60.0)),
+                 on = dive_of(fast_sensors(folder, 60.0));
+  dive.simulation->advance(31);
+  const StateFormat format = dive.world->state_format();
+  restore_state(
+      *on.simulation,
+      parse_state(format, encode_state(format, saved_state(*dive.simulation, format)), "state")
+          .value());
+  OutputSamples first(*dive.world, OutputSamples::all(*dive.world)),
+      later(*on.world, OutputSamples::all(*on.world));
+  for (int i = 0; i < 30; ++i) {
+    const auto a = first.of(dive.simulation->newest()), b = later.of(on.simulation->newest());
+    ASSERT_EQ(a.size(), b.size()) << i;
+    EXPECT_GT(a.size(), 16u + 5u + 2u) << i;
+    for (std::size_t k = 0; k < a.size(); ++k)
+      ASSERT_TRUE(sim::same_bits(a[k].header, b[k].header)) << i;
+    ASSERT_EQ(dive.simulation->newest().hash, on.simulation->newest().hash) << i;
+    dive.simulation->advance(1), on.simulation->advance(1);
+  }
+}
+
 TEST(OutputSamples, AConsumerThatBeginsLateReadsTheSameSamples) {
   const TestDive dive = dive_of(survey_and_diver());
   const auto all = OutputSamples::all(*dive.world);

@@ -77,6 +77,30 @@ class TopicCount final : public recording::McapVisitor {
   std::map<std::uint16_t, std::string> topics_;
 };
 
+// The inertial unit of the shipped survey vehicle reads at 200 Hz, here beside steps of 60 Hz.
+TEST(RecordingFile, HasEachReadingOfASensorThatIsFasterThanTheSteps) {
+  const test::ScratchFolder folder;
+  const fs::path path = folder / "run.mcap";
+  TestDive dive =
+      dive_of("[physics]\nrate_hz = 60\n" +
+              rov_text("position_m = [0, -6, 0]\n", "rov", "bluerov2_heavy_survey_dynamics.toml"));
+  RecordingFile file(*dive.world, *dive.simulation, path, {});
+  OutputSamples outputs(*dive.world, file.streams());
+  const auto accept = [&](const auto& step) {
+    ASSERT_TRUE(file.accept(step, outputs.of(step)).ok());
+  };
+  accept(dive.simulation->newest());
+  dive.simulation->observe(accept, [&](const Sample& sample) { (void)file.use(sample); });
+  dive.run(5.0);
+  ASSERT_TRUE(file.finish().ok());
+  TopicCount count;
+  ASSERT_TRUE(recording::read_mcap(*recording::open_mcap(path).value(), "run", count).ok());
+  EXPECT_EQ(count.counts["/rov/imu"], 1001);
+  const auto log = read_sample_log(path);
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  EXPECT_FALSE(replay_run(*dive.world, *log, "run.mcap").value().first_difference);
+}
+
 TEST(RecordingFile, ARecordingByKeyHasTheSoundFromItsBeginningToItsEnd) {
   const test::ScratchFolder folder;
   TestDive dive = dive_of(hover_text(""));
