@@ -68,13 +68,9 @@ void LivePhysics::between_steps(const std::function<void(PhysicsSimulation&)>& a
 }
 
 Status LivePhysics::go_to(const SavedState& saved) {
-  const auto known = inbox().source_names();
-  for (std::size_t id = 0; id < std::min(known.size(), saved.sources.size()); ++id)
-    if (known[id] != saved.sources[id])
-      return bad_input("its source {} is {}, here {}; accepted: a state of this run, or --restore",
-                       id, saved.sources[id], known[id]);
+  NERITIC_TRY(const auto sources, open_sources(inbox(), saved));
   between_steps([&](PhysicsSimulation& simulation) {
-    restore_state(simulation, saved);
+    restore_state(simulation, saved, sources);
     begin_history();
     start_step_ = simulation.newest().step;
     shown_s_ = simulation.newest().time_s;

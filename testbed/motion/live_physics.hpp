@@ -53,9 +53,9 @@ class LivePhysics {
   // Calls act between two steps, with the thread at rest meanwhile: it may save, restore and change
   // who observes.
   void between_steps(const std::function<void(PhysicsSimulation&)>& act);
-  // Goes on from a saved state of this world at once, also an earlier one; samples that no step
-  // used yet are dropped. kBadInput, and no change, if the inbox has other sources under the
-  // state's numbers. Lock-step: the loop's clock has to begin anew there.
+  // Goes on from a saved state of this world at once, also an earlier one or another run's; samples
+  // that no step used yet are dropped. kBadInput, and the state stays, if the inbox has no room for
+  // its sources. Lock-step: the loop's clock has to begin anew there.
   Status go_to(const SavedState& saved);
   std::uint64_t restored() const { return restored_; }  // how often it went so
   // Beside a thread: follow() waits for a step that is due within this share of a step, so that a

@@ -98,14 +98,18 @@ struct GroupState {
   std::uint64_t heard = 0, unheeded = 0, unheeded_source = 0;
 
   static void fields(auto&& field, auto& self) {
+    fields_but_sources(field, self);
+    field("source", self.source);
+    field("unheeded_source", self.unheeded_source);
+  }
+  // Without numbers that depend on the order in which sources were opened.
+  static void fields_but_sources(auto&& field, auto& self) {
     field("phase", self.phase);
     field("losses", self.losses);
     field("authority", self.authority);
     field("then", self.then);
-    field("source", self.source);
     field("heard", self.heard);
     field("unheeded", self.unheeded);
-    field("unheeded_source", self.unheeded_source);
   }
 };
 

@@ -1,5 +1,7 @@
 #include "testbed/samples/inbox.hpp"
 
+#include <algorithm>
+
 #include "engine/core/refusal.hpp"
 #include "engine/core/source_name.hpp"
 
@@ -141,6 +143,19 @@ std::vector<std::string> SampleInbox::source_names() const {
   std::vector<std::string> names;
   for (const Source& source : sources_) names.push_back(source.name);
   return names;
+}
+
+std::optional<SourceId> SampleInbox::find(const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = std::ranges::find(sources_, name, &Source::name);
+  if (found == sources_.end()) return std::nullopt;
+  return static_cast<SourceId>(found - sources_.begin());
+}
+
+void SampleInbox::begin_anew() {
+  const std::lock_guard lock(mutex_);
+  for (Source& source : sources_)
+    for (Track& track : source.tracks) track.sequence = {};
 }
 
 SourceCounts SampleInbox::counts(SourceId source) const {

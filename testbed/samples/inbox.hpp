@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -58,6 +59,10 @@ class SampleInbox {
 
   // Any thread.
   std::vector<std::string> source_names() const;  // by SourceId
+  std::optional<SourceId> find(const std::string& name) const;
+  // After a leap in time: any source's next samples may have any sequence numbers and capture
+  // times.
+  void begin_anew();
   SourceCounts counts(SourceId source) const;
   std::uint64_t unknown_sources() const;  // samples of sources that were never opened
   // Drains that returned nothing because others held the inbox.

@@ -348,8 +348,8 @@ class PhysicsState
     auto earlier = self.earlier();
     field("earlier", earlier);
   }
-  // The hash covers groups once a live source was asked for, and of the kinds after the first three
-  // those that the scene has.
+  // The hash covers groups once a live source was asked for, but no numbers of sources, and of the
+  // kinds after the first three those that the scene has.
   std::span<const std::uint64_t> hashed_counts() const {
     std::size_t kinds = kKinds;
     while (kinds > 3 && counts()[kinds - 1] == 0) --kinds;
@@ -360,7 +360,7 @@ class PhysicsState
       std::remove_cvref_t<decltype(one)>::fields_but_groups(field, one);
       for (const GroupState& group : one.groups)
         if (group.phase != GroupPhase::kChosen || group.losses > 0) {
-          field("groups", one.groups);
+          for (auto& each : one.groups) GroupState::fields_but_sources(field, each);
           return;
         }
     };

@@ -53,6 +53,21 @@ void add_fields(Hash64& hash, const T& like) {
   });
 }
 
+// Calls act with every number of a source.
+template <class State, class Inputs, class Act>
+void for_each_source(State& state, Inputs& inputs, const Act& act) {
+  const auto each = [&](auto&& participants, auto groups) {
+    for (auto& participant : participants)
+      for (auto& group : participant.*groups) act(group.source), act(group.unheeded_source);
+  };
+  each(state.vehicles(), &VehicleState::groups);
+  each(state.humans(), &HumanPhysics::groups);
+  each(state.objects(), &ObjectState::groups);
+  each(inputs.vehicles(), &VehicleInputs::control);
+  each(inputs.humans(), &DiverInputs::control);
+  each(inputs.objects(), &ObjectInputs::control);
+}
+
 Status check_header(const Header& header, const StateFormat& format, std::size_t size,
                     const std::string& name) {
   if (header.version != kVersion)
@@ -192,28 +207,43 @@ Result<SavedState> read_state(const std::filesystem::path& path, const StateForm
 
 SavedState saved_state(const PhysicsSimulation& simulation, const StateFormat& format) {
   const PhysicsInputs& inputs = simulation.inputs();
+  const PhysicsState& state = simulation.newest().state;
   // Sources that were opened and never used stay out, so that the bytes do not depend on who looks.
   std::size_t named = format.sources.size();
-  const auto keep = [&](const auto& participants) {
-    for (const auto& participant : participants)
-      for (const GroupControl& control : participant.control)
-        named = std::max({named, static_cast<std::size_t>(control.source) + 1,
-                          static_cast<std::size_t>(control.unheeded_source) + 1});
-  };
-  keep(inputs.vehicles());
-  keep(inputs.humans());
-  keep(inputs.objects());
+  for_each_source(state, inputs, [&](std::uint64_t source) {
+    named = std::max(named, static_cast<std::size_t>(source) + 1);
+  });
   std::vector<std::string> names = simulation.inbox().source_names();
   names.resize(std::min(named, names.size()));
-  return {simulation.newest().step, simulation.newest().state, inputs, std::move(names)};
+  return {simulation.newest().step, state, inputs, std::move(names)};
+}
+
+Result<std::vector<SourceId>> open_sources(SampleInbox& inbox, const SavedState& saved) {
+  std::vector<SourceId> out;
+  for (const std::string& name : saved.sources) {
+    auto id = inbox.find(name);
+    if (!id) {
+      NERITIC_TRY(id, inbox.open(name));
+    }
+    out.push_back(*id);
+  }
+  return out;
+}
+
+void restore_state(PhysicsSimulation& simulation, const SavedState& saved,
+                   std::span<const SourceId> sources) {
+  SavedState here = saved;
+  for_each_source(here.state, here.inputs, [&](std::uint64_t& source) {
+    if (source < sources.size()) source = sources[source];
+  });
+  simulation.restore(here.step, here.state, here.inputs);
+  simulation.inbox().begin_anew();
 }
 
 void restore_state(PhysicsSimulation& simulation, const SavedState& saved) {
-  for (SourceId id = kSimulation + 1; id < saved.sources.size(); ++id) {
-    const auto opened = simulation.inbox().open(saved.sources[id]);
-    NERITIC_CHECK(opened.ok() && *opened == id, "source {} is not '{}'", id, saved.sources[id]);
-  }
-  simulation.restore(saved.step, saved.state, saved.inputs);
+  const auto sources = open_sources(simulation.inbox(), saved);
+  NERITIC_CHECK(sources.ok(), "{}", sources.ok() ? "" : sources.error().message);
+  restore_state(simulation, saved, *sources);
 }
 
 }  // namespace neritic::testbed

@@ -47,8 +47,14 @@ Result<SavedState> read_state(const std::filesystem::path& path, const StateForm
 
 // The state of a simulation of the world that the format is of, to save after a step.
 SavedState saved_state(const PhysicsSimulation& simulation, const StateFormat& format);
-// Goes on from it in a simulation of such a world that no device was opened in. Opens the saved
-// sources, so that each name has its number again, whichever device comes first.
+// The numbers of its sources in an inbox, by their numbers in the state. Opens those that the inbox
+// does not know; kBadInput if it has no room for them.
+Result<std::vector<SourceId>> open_sources(SampleInbox& inbox, const SavedState& saved);
+// Goes on from it in a simulation of such a world, whose inbox has its sources under these numbers.
+// Samples of any source may begin anew.
+void restore_state(PhysicsSimulation& simulation, const SavedState& saved,
+                   std::span<const SourceId> sources);
+// The same in one that no device was opened in: each source has its number again.
 void restore_state(PhysicsSimulation& simulation, const SavedState& saved);
 
 }  // namespace neritic::testbed

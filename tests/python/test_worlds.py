@@ -95,6 +95,24 @@ class Worlds(unittest.TestCase):
         world.tick(100)
         self.assertEqual(world.hash, ended)
 
+    def test_a_saved_state_fits_a_world_whose_sources_came_in_another_order(self):
+        with neritic.open(DIVE, seed=1) as one, neritic.open(DIVE, seed=1) as other:
+            one.inject("diver/buttons", [1, 0, 0], source="ada")
+            one["rov"].goto(1, 2, -10)
+            one.tick(24)
+            state = one.save()
+            other.inject("diver/buttons", [0, 1, 0], source="bob")
+            other.tick(7)
+            other["rov"].goto(3, 2, -10)
+            other.tick(5)
+            other.restore(state)
+            self.assertEqual((one.step, one.hash), (other.step, other.hash))
+            for world in (one, other):
+                world.inject("diver/buttons", [0, 0, 1], source="ada")
+                world["rov"].velocity(0.2, 0, 0)
+                world.tick(48)
+            self.assertEqual(one.hash, other.hash)
+
     def test_observations_do_not_change_and_say_where_they_come_from(self):
         world = neritic.open(MEASURED, seed=1)
         before = world.tick(48)

@@ -146,6 +146,84 @@ TEST(SavedState, EachSourceHasItsNumberAgainWhicheverDeviceComesFirst) {
   EXPECT_EQ(later.simulation->inputs().vehicles()[1].control[kWrench].source, keyboard);
 }
 
+// A state fits a run of the same scene whose devices came in another order, with other names too:
+// it goes on with the hashes of its own run, and the names have the authority, not the numbers.
+TEST(SavedState, GoesOnInARunWhoseSourcesHaveOtherNumbers) {
+  constexpr auto kWrench = static_cast<std::size_t>(VehicleGroup::kWrench);
+  TestDive run = dive_of(saved_scene());
+  const auto events = run.world->streams().find("adrift/event").value();
+  const auto push = [&](const TestDive& dive, const std::string& name, std::uint64_t sequence,
+                        double wrench_n) {
+    SampleInbox& inbox = dive.simulation->inbox();
+    const SourceId source = inbox.find(name).value();
+    const auto now = static_cast<TimeNs>(1e9 * dive.time_s());
+    if (sequence == 0) {
+      EXPECT_EQ(
+          inbox.push({{events, source, 0, now, now}, hand_over(kWrench, Authority::kLive, source)}),
+          SampleVerdict::kAccepted);
+    }
+    VehicleWrench wrench;
+    wrench.wrench[0] = wrench_n;
+    EXPECT_EQ(inbox.push({{dive.world->streams().find("adrift/wrench").value(), source, sequence,
+                           now, now},
+                          wrench}),
+              SampleVerdict::kAccepted);
+  };
+  for (const char* name : {"pad", "keyboard"}) ASSERT_TRUE(run.simulation->inbox().open(name).ok());
+  push(run, "pad", 0, 5.0), run.simulation->advance(3);
+  push(run, "keyboard", 0, 20.0), run.simulation->advance(3);
+  const StateFormat format = run.world->state_format();
+  const auto saved =
+      parse_state(format, encode_state(format, saved_state(*run.simulation, format)), "dive.state");
+  ASSERT_TRUE(saved.ok()) << saved.error().message;
+
+  TestDive other = dive_of(saved_scene());
+  SampleInbox& inbox = other.simulation->inbox();
+  constexpr TimeNs kSlow_ns = 3'000'000'000;
+  const SourceId strap = inbox.open("strap", kSlow_ns).value();
+  ASSERT_TRUE(inbox.open("joystick").ok());
+  const SourceId keyboard = inbox.open("keyboard").value();
+  push(other, "keyboard", 0, 7.0), other.simulation->advance(5);
+  const auto sources = open_sources(inbox, *saved);
+  ASSERT_TRUE(sources.ok()) << sources.error().message;
+  restore_state(*other.simulation, *saved, *sources);
+  EXPECT_EQ(inbox.find("strap"), strap);
+  EXPECT_EQ(inbox.find("keyboard"), keyboard);
+  EXPECT_NE(saved->inputs.vehicles()[1].control[kWrench].source, keyboard);
+  const GroupControl& control = other.simulation->inputs().vehicles()[1].control[kWrench];
+  EXPECT_EQ(control.source, keyboard);
+  EXPECT_EQ(other.simulation->newest().hash, run.simulation->newest().hash);
+  // Both go on, by the keyboard's next word alone: the pad is not heeded.
+  for (std::uint64_t i = 1; i < 20; ++i) {
+    for (TestDive* dive : {&run, &other}) {
+      push(*dive, "keyboard", i, 20.0 + static_cast<double>(i));
+      push(*dive, "pad", i, -50.0);
+      dive->simulation->advance(1);
+    }
+    ASSERT_EQ(other.simulation->newest().hash, run.simulation->newest().hash) << i;
+  }
+  EXPECT_GT(control.heard, 19u);
+  EXPECT_EQ(control.unheeded_source, inbox.find("pad"));
+  // A slow device may still be as late as it said.
+  const auto gas = other.world->streams().find("diver/heart").value();
+  const auto now = static_cast<TimeNs>(1e9 * other.time_s()) + kSlow_ns;
+  EXPECT_EQ(inbox.push({{gas, strap, 0, now - kSlow_ns + 1, now}, Heart{}}),
+            SampleVerdict::kAccepted);
+}
+
+TEST(SavedState, AnInboxWithoutRoomForItsSourcesIsToldInOneLine) {
+  TestDive run = dive_of(saved_scene());
+  SavedState saved = saved_state(*run.simulation, run.world->state_format());
+  saved.sources.push_back("pad");
+  SampleInbox& inbox = run.simulation->inbox();
+  for (std::size_t i = inbox.source_names().size(); i < SampleInbox::kMaxSources; ++i)
+    ASSERT_TRUE(inbox.open(fmt::format("device_{}", i)).ok());
+  const auto sources = open_sources(inbox, saved);
+  ASSERT_FALSE(sources.ok());
+  EXPECT_EQ(sources.error().code, ErrorCode::kBadInput);
+  EXPECT_NE(sources.error().message.find("accepted: up to 256"), std::string::npos);
+}
+
 TEST(SavedState, NamesThatAreNotThoseOfTheSceneOrComeTwiceAreRefusedInOneLine) {
   TestDive dive = dive_of(saved_scene());
   const StateFormat format = dive.world->state_format();
