@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rov/frames.hpp"
+#include "testbed/simulation/periods.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -17,14 +18,6 @@ double tilt_of(const Quat& q) {
 }
 
 constexpr double kHumanRows_hz = 10.0;
-
-// Whether a row falls into the step that ends here.
-bool due(double rows_a_step, std::uint64_t step) {
-  const auto rows = [&](std::uint64_t steps) {
-    return std::floor(static_cast<double>(steps) * rows_a_step + 1e-9);
-  };
-  return step == 0 || rows(step) != rows(step - 1);
-}
 
 }  // namespace
 
@@ -49,12 +42,12 @@ DiveRecorder::DiveRecorder(const PhysicsWorld& world, const RecordOptions& optio
 
 bool DiveRecorder::row_due(std::size_t vehicle, std::uint64_t step) const {
   if (options_.row_rate_hz == 0.0) return world_.control_due(vehicle, step);
-  return due(options_.row_rate_hz * world_.step_s(), step);
+  return period_begins(step, world_.step_s(), 1.0 / options_.row_rate_hz);
 }
 
 bool DiveRecorder::human_row_due(std::uint64_t step) const {
   const double hz = options_.row_rate_hz == 0.0 ? kHumanRows_hz : options_.row_rate_hz;
-  return due(hz * world_.step_s(), step);
+  return period_begins(step, world_.step_s(), 1.0 / hz);
 }
 
 DiveRow DiveRecorder::row_of(std::size_t index, const sim::Snapshot<PhysicsState>& snapshot) const {

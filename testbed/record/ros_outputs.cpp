@@ -7,6 +7,7 @@
 #include "engine/recording/ros_types.hpp"
 #include "testbed/samples/recording_names.hpp"
 #include "testbed/samples/sample_log.hpp"
+#include "testbed/simulation/periods.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -136,9 +137,7 @@ void RosOutputs::odometry(const std::string& name, const Pose& world_from_model,
 
 void RosOutputs::step(const sim::Snapshot<PhysicsState>& snapshot) {
   const double period_s = std::max(1.0 / kOdometry_hz, world_.step_s());
-  const auto due = static_cast<std::uint64_t>(std::floor(
-                       static_cast<double>(snapshot.step) * world_.step_s() / period_s + 1e-9)) +
-                   1;
+  const std::uint64_t due = periods_at(snapshot.step, world_.step_s(), period_s) + 1;
   if (due == odometries_) return;
   odometries_ = due;
   const auto now_ns = static_cast<std::int64_t>(std::llround(snapshot.time_s * 1e9));

@@ -4,26 +4,17 @@
 #include <cmath>
 
 #include "engine/core/motion.hpp"
+#include "testbed/samples/capture_times.hpp"
 #include "testbed/samples/pose_track.hpp"
 
 namespace neritic::testbed {
-namespace {
-
-// A recorded source's clock may lie anywhere.
-constexpr double kMostLimbAge_s = 1.0;
-
-double span_s(TimeNs from_ns, TimeNs to_ns) {
-  return 1e-9 * (static_cast<double>(to_ns) - static_cast<double>(from_ns));
-}
-
-}  // namespace
 
 void LimbTrack::take(const BodyJoints& body, const SampleHeader& header, double hold_s,
                      std::uint64_t step) {
-  const double since_s = span_s(base_captured_ns, header.captured_ns);
+  const double since_s = seconds_between(base_captured_ns, header.captured_ns);
   const bool follows = taken > 0 && since_s >= 0.0 && since_s <= hold_s;
   for (std::size_t i = 0; i < diver::kJoints; ++i) newest[i] = glm::normalize(body.joints[i]);
-  age_s = std::clamp(span_s(header.captured_ns, header.arrived_ns), 0.0, kMostLimbAge_s);
+  age_s = age_on_arrival_s(header);
   ++taken;
   taken_step = step;
   if (follows && since_s < kLeastInterval_s) return;

@@ -3,17 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "testbed/samples/capture_times.hpp"
+
 namespace neritic::testbed {
-namespace {
-
-// A recorded source's clock may lie anywhere.
-constexpr double kMostAge_s = 1.0;
-
-double seconds_between(TimeNs from_ns, TimeNs to_ns) {
-  return 1e-9 * (static_cast<double>(to_ns) - static_cast<double>(from_ns));
-}
-
-}  // namespace
 
 Vec3 turning_rad_s(const Quat& from, const Quat& to, double interval_s) {
   Quat turn = to * glm::conjugate(from);
@@ -29,7 +21,7 @@ void PoseTrack::take(const ObjectPose& pose, const SampleHeader& header, double 
   const double since_s = seconds_between(base_captured_ns, header.captured_ns);
   const bool follows = taken > 0 && since_s >= 0.0 && since_s <= hold_s;
   newest.pose = at;
-  age_s = std::clamp(seconds_between(header.captured_ns, header.arrived_ns), 0.0, kMostAge_s);
+  age_s = age_on_arrival_s(header);
   ++taken;
   if (follows && since_s < kLeastInterval_s && pose.measured == 0) return;
   newest.velocity_m_s = newest.angular_velocity_rad_s = Vec3(0.0);

@@ -9,6 +9,7 @@
 #include "engine/sim/motion.hpp"
 #include "testbed/samples/riding.hpp"
 #include "testbed/simulation/human_world.hpp"
+#include "testbed/simulation/periods.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -48,11 +49,12 @@ constexpr double kHumanFriction = sim::Surface{}.friction;
 // How long before the end of the step the dive computer's sample in it is due; none: it is not.
 std::optional<double> since_sample_s(std::uint64_t step, double dt_s) {
   const auto samples = [&](std::uint64_t steps) {
-    return std::floor(static_cast<double>(steps) * dt_s / diver::kComputerSample_s + 1e-9);
+    return periods_at(steps, dt_s, diver::kComputerSample_s);
   };
-  const double last = samples(step + 1);
+  const std::uint64_t last = samples(step + 1);
   if (last == samples(step)) return std::nullopt;
-  const double since_s = static_cast<double>(step + 1) * dt_s - last * diver::kComputerSample_s;
+  const double since_s =
+      static_cast<double>(step + 1) * dt_s - static_cast<double>(last) * diver::kComputerSample_s;
   return since_s > 1e-9 ? since_s : 0.0;
 }
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "testbed/simulation/diver_condition.hpp"
 #include "testbed/simulation/human_readings.hpp"
+#include "testbed/simulation/periods.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -105,8 +106,8 @@ OutputSamples::OutputSamples(const PhysicsWorld& world, const std::vector<Stream
 
 // Readings at 0, period_s, 2 period_s ..., each at the first step that is not before it.
 OutputSamples::Made OutputSamples::every(double period_s, std::uint64_t step) const {
-  const double periods = std::floor(static_cast<double>(step) * world_.step_s() / period_s + 1e-9);
-  return {static_cast<std::uint64_t>(periods) + 1, periods * period_s};
+  const std::uint64_t periods = periods_at(step, world_.step_s(), period_s);
+  return {periods + 1, static_cast<double>(periods) * period_s};
 }
 
 OutputSamples::Made OutputSamples::made(const Stream& stream,

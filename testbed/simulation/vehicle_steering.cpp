@@ -6,6 +6,7 @@
 #include "rov/frames.hpp"
 #include "rov/guidance.hpp"
 #include "rov/thrust_priority.hpp"
+#include "testbed/simulation/periods.hpp"
 #include "testbed/simulation/physics_world.hpp"
 #include "testbed/simulation/surface.hpp"
 #include "testbed/simulation/wash.hpp"
@@ -59,12 +60,7 @@ VehicleVelocity within_reach(VehicleVelocity wanted, const rov::Vehicle& vehicle
 }  // namespace
 
 bool PhysicsWorld::control_due(std::size_t vehicle, std::uint64_t step) const {
-  if (step == 0) return true;
-  const double periods_a_step = step_s_ / vehicles_[vehicle].file.gains.period_s;
-  const auto periods = [&](std::uint64_t steps) {
-    return std::floor(static_cast<double>(steps) * periods_a_step + 1e-9);
-  };
-  return periods(step) != periods(step - 1);
+  return period_begins(step, step_s_, vehicles_[vehicle].file.gains.period_s);
 }
 
 // Forces of thrusters are not the autopilot's, whose rate the file gives: they act in the step in

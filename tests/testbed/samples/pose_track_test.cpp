@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/sim/fields.hpp"
+#include "testbed/samples/capture_times.hpp"
 #include "testbed/samples/group_inputs.hpp"
 #include "tests/testbed/samples/streams.hpp"
 
@@ -44,6 +45,30 @@ TEST(PoseTrack, VelocitiesFollowFromPosesByTheirCaptureTimes) {
     EXPECT_LT(glm::distance(now.angular_velocity_rad_s, turn), 1e-6);
     EXPECT_LT(glm::distance(track.at(0.03).pose.position_m, velocity * (t + 0.03)), 1e-9);
   }
+}
+
+// As doubles, nanoseconds since 1970 are 256 apart: 1.6e-5 of this interval.
+TEST(PoseTrack, OfAClockThatCountsFrom1970IsAsExact) {
+  constexpr TimeNs kStart_ns = 1'764'363'045'123'456'789, kEach_ns = 4'166'667;
+  PoseTrack track;
+  LimbTrack limbs;
+  for (int i = 0; i < 5; ++i) {
+    const TimeNs at_ns = kStart_ns + i * kEach_ns;
+    const double t_s = 1e-9 * static_cast<double>(i * kEach_ns);
+    const SampleHeader header{.captured_ns = at_ns, .arrived_ns = at_ns + 1'000'001};
+    track.take(at_x(t_s), header, kHold_s);
+    BodyJoints body{.joints = diver::straight_joints()};
+    body.joints[3] = glm::angleAxis(2.0 * t_s, Vec3(0.0, 1.0, 0.0));
+    limbs.take(body, header, kHold_s, 0);
+    if (i == 0) continue;
+    EXPECT_NEAR(track.newest.velocity_m_s.x, 1.0, 1e-9) << i;
+    EXPECT_NEAR(limbs.rate_rad_s[3].y, 2.0, 1e-8) << i;
+    EXPECT_NEAR(track.age_s, 1.000001e-3, 1e-12) << i;
+    EXPECT_NEAR(limbs.age_s, 1.000001e-3, 1e-12) << i;
+  }
+  // Clocks whose difference no integer holds are far apart, and no more.
+  EXPECT_GT(seconds_between(std::numeric_limits<TimeNs>::min(), 1), 9.2e9);
+  EXPECT_LT(seconds_between(std::numeric_limits<TimeNs>::max(), -2), -9.2e9);
 }
 
 TEST(PoseTrack, LatencyIsMadeUpForByTheVelocity) {
