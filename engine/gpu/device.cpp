@@ -7,6 +7,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/hash.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/refusal.hpp"
 #include "engine/gpu/device_select.hpp"
 #include "engine/gpu/error.hpp"
 #include "engine/gpu/instance.hpp"
@@ -52,7 +53,8 @@ Result<std::uint32_t> made_choice(const DeviceOptions& options, VkInstance insta
   if (options.device.empty()) return index;
   NERITIC_TRY(const std::uint32_t chosen, choose_device(infos, options.device));
   if (chosen != index)
-    return bad_input("--device {}: the display hangs on {}", options.device, infos[index].name);
+    return refusal("device", fmt::format("'{}'", options.device),
+                   infos[index].name + ", on which the display hangs");
   return index;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 
 namespace neritic::gpu {
@@ -107,13 +108,15 @@ Result<std::uint32_t> choose_device(std::span<const DeviceInfo> devices,
   }
   // Names are full of small numbers (of versions, of bits); a model's has four digits (4090).
   if (parse_index(wanted) && wanted.size() < 4)
-    return bad_input("no Vulkan device '{}'; there is {}", wanted, device_names(devices));
+    return refusal("device", fmt::format("'{}'", wanted),
+                   "part of a name, or a number, of " + device_names(devices));
   const auto named = [needle = lower_case(wanted)](const DeviceInfo& d) {
     return lower_case(d.name).find(needle) != std::string::npos;
   };
   if (const auto found = best(devices, true, named)) return *found;
   if (const auto found = best(devices, false, named)) return lacks(devices[*found]);
-  return bad_input("no Vulkan device '{}'; there is {}", wanted, device_names(devices));
+  return refusal("device", fmt::format("'{}'", wanted),
+                 "part of a name, or a number, of " + device_names(devices));
 }
 
 }  // namespace neritic::gpu

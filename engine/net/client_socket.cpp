@@ -57,7 +57,7 @@ Result<std::unique_ptr<ClientSocket>> ClientSocket::connect(const ClientSocketOp
     return failure(ErrorCode::kInternal, "{}: {}", kMonitor, zmq_strerror(errno));
   if (options.keys) {
     if (!is_key(options.server_z85))
-      return refusal("the server's key", "\"" + options.server_z85 + "\"", "40 characters");
+      return refusal("the server's key", fmt::format("'{}'", options.server_z85), "40 characters");
     set_option(socket, ZMQ_CURVE_SERVERKEY, options.server_z85);
     set_option(socket, ZMQ_CURVE_PUBLICKEY, options.keys->public_z85);
     set_option(socket, ZMQ_CURVE_SECRETKEY, options.keys->secret_z85);

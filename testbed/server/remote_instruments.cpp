@@ -78,8 +78,7 @@ Result<std::string> diver_of(const json& hello, const std::string& where,
                    "a scene with a diver that has physics");
   if (asked.empty()) return divers.front();
   if (std::ranges::find(divers, asked) != divers.end()) return asked;
-  return refusal("--diver", fmt::format("\"{}\"", asked),
-                 fmt::format("{}", fmt::join(divers, ", ")));
+  return refusal("--diver", fmt::format("'{}'", asked), fmt::format("{}", fmt::join(divers, ", ")));
 }
 
 }  // namespace

@@ -238,7 +238,8 @@ Status WorldServer::record(const Ask& ask, Answer& answer) {
   if (options_.recordings.empty())
     return refusal("record", "a server that keeps no recordings", "neritic serve --recordings DIR");
   if (!is_word(ask.request.name))
-    return refusal("record: name", "\"" + ask.request.name + "\"", "a plain word, without folders");
+    return refusal("record: name", fmt::format("'{}'", ask.request.name),
+                   "a plain word, without folders");
   const auto file = options_.recordings / ask.request.name;
   answer.text = file.string();
   return world_.record(file);

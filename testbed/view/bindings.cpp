@@ -4,6 +4,7 @@
 
 #include "engine/core/files.hpp"
 #include "engine/core/refusal.hpp"
+#include "engine/core/text.hpp"
 #include "engine/core/toml.hpp"
 
 namespace neritic::testbed {
@@ -32,13 +33,14 @@ Result<std::vector<xr::ActionDesc>> bound_actions(std::vector<xr::ActionDesc> ac
   for (const xr::ActionDesc& action : actions) names += (names.empty() ? "" : ", ") + action.name;
   for (const TomlEntry& table : root.entries) {
     if (table.key != "actions" || !table.value.is_table())
-      return refusal(at(file, table.where), table.key, "[actions]");
+      return refusal(at(file, table.where), fmt::format("'{}'", printable(table.key)), "[actions]");
     for (const TomlEntry& entry : table.value.entries) {
       const auto found =
           std::find_if(actions.begin(), actions.end(),
                        [&](const xr::ActionDesc& action) { return action.name == entry.key; });
       if (found == actions.end())
-        return refusal(at(file, entry.where), "action " + entry.key, names);
+        return refusal(at(file, entry.where), fmt::format("action '{}'", printable(entry.key)),
+                       names);
       NERITIC_TRY(found->bindings, controls_of(entry.value, at(file, entry.where)));
       const auto read = xr::ActionTable::create({&*found, 1});
       if (!read.ok()) return bad_input("{}: {}", at(file, entry.where), read.error().message);

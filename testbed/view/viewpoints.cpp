@@ -108,7 +108,7 @@ Result<std::size_t> viewpoint_named(const std::string& name, const scene::Scene&
   for (const Viewpoint& viewpoint : viewpoints_of(scene)) known.push_back(viewpoint.name);
   const auto found = std::ranges::find(known, name);
   if (found == known.end())
-    return refusal("--view", name, fmt::format("{}", fmt::join(known, ", ")));
+    return refusal("--view", fmt::format("'{}'", name), fmt::format("{}", fmt::join(known, ", ")));
   return static_cast<std::size_t>(found - known.begin());
 }
 

@@ -347,8 +347,11 @@ Status World::inject(const std::string& name, std::span<const double> values,
                      const std::string& from, std::optional<double> stamp_s) {
   Parts& parts = *parts_;
   NERITIC_TRY(const std::uint32_t id, stream(name));
-  if (parts.streams[id].sort != StreamInfo::Sort::kInput || parts.streams[id].fields.empty())
+  if (parts.streams[id].sort != StreamInfo::Sort::kInput)
     return refusal("inject: " + name, "a stream that leaves", "a stream of inputs");
+  if (parts.streams[id].fields.empty())
+    return refusal("inject: " + name, "events, which hand over the authority",
+                   "a stream of inputs with fields; commands and release() hand over");
   const PayloadKind kind = parts.world().streams()[id].kind;
   const std::size_t count = ros::value_count(kind);
   NERITIC_TRY_STATUS(check_count(name, values.size(), count, count));

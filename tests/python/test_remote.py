@@ -235,7 +235,7 @@ class Remote(unittest.TestCase):
             self.assertRegex(ends[0], "closed")
 
     def test_a_server_is_refused_what_it_cannot_use(self):
-        for flags, words in ((["--bind", "foo"], "--bind: found foo; accepted: tcp://ADDRESS:PORT"),
+        for flags, words in ((["--bind", "foo"], "--bind: found 'foo'; accepted: tcp://ADDRESS:PORT"),
                              (["--recordings", "/nowhere/at/all"], "--recordings: found /nowhere/at/all, no folder; accepted: ")):
             done = subprocess.run([PROGRAM, "serve", SCENE, *flags], capture_output=True, text=True, timeout=30)
             self.assertEqual(done.returncode, 2)

@@ -49,12 +49,47 @@ TEST(CommandLine, AFlagSaysWhatItWantsAndAMisspeltOneTheNearest) {
             "plan --help)");
   EXPECT_THAT(said({"plan", "--depth=deep"}),
               HasSubstr("--depth: found 'deep'; accepted: a number"));
-  EXPECT_EQ(said({"plan", "--dept", "30", "--time", "20"}),
-            "--dept: no such flag; the nearest is --depth (see neritic plan --help)");
+  EXPECT_EQ(
+      said({"plan", "--dept", "30", "--time", "20"}),
+      "--dept: found no such flag; accepted: the flags of --help (nearest: --depth) (see neritic "
+      "plan --help)");
   EXPECT_THAT(said({"render", "a.toml", "--out", "o", "--offset", "1", "2"}),
               HasSubstr("--offset: found 2 of 3 values; accepted: moves the whole world by x y z"));
-  EXPECT_THAT(said({"dive", "a.toml", "--headles"}), HasSubstr("nearest is --headless"));
-  EXPECT_THAT(said({"dive", "a.toml", "--verbos"}), HasSubstr("nearest is --verbose"));
+  EXPECT_THAT(said({"dive", "a.toml", "--headles"}), HasSubstr("(nearest: --headless)"));
+  EXPECT_THAT(said({"dive", "a.toml", "--verbos"}), HasSubstr("(nearest: --verbose)"));
+}
+
+// Whatever the parser finds wrong is told in the form of every other refusal.
+TEST(CommandLine, EachRefusalSaysWhatWasFoundAndWhatIsAccepted) {
+  const std::vector<std::pair<std::vector<std::string>, const char*>> wrong{
+      {{}, "found no command; accepted: render, sonar"},
+      {{"serve"}, "scene: found nothing; accepted: scene file"},
+      {{"render", "a.toml"}, "--out: found nothing; accepted: "},
+      {{"render", "a.toml", "b.toml", "--out", "o"},
+       "render: found 'b.toml' besides; accepted: scene"},
+      {{"render", "a.toml", "--out", "o", "--seed", "-1"}, "--seed: found '-1'; accepted: a whole"},
+      {{"render", "a.toml", "--out", "o", "--frames"}, "--frames: found "},
+      {{"render", "a.toml", "--out", "o", "--quality", "best"},
+       "--quality: found 'best'; accepted: draft, standard, reference"},
+      {{"dive", "a.toml", "--units", "feet"}, "--units: found 'feet'; accepted: metric, imperial"},
+      {{"dive", "a.toml", "--headless=soon"}, "--headless: found "},
+      {{"dive", "a.toml", "--refresh", "0.5"}, "--refresh: found '0.5'; accepted: 1 to 1000"},
+      {{"hud"}, "hud: found none of --replay, --connect; accepted: one of them"},
+      {{"hud", "--replay", "a.mcap", "--connect", "tcp://a:1"},
+       "hud: found 2 of --replay, --connect; accepted: one"},
+      {{"serve", "a.toml", "--lockstep", "--realtime"}, "beside it; accepted: one of them"},
+      {{"physio"}, "found nothing; accepted: "},
+      {{"plan", "--depth"}, "--depth: found "},
+      {{"doctor", "--nosuch"},
+       "--nosuch: found no such flag; accepted: the flags of --help (nearest: "},
+  };
+  for (const auto& [words, line] : wrong) {
+    EXPECT_THAT(said(words), HasSubstr(line));
+    EXPECT_THAT(said(words),
+                MatchesRegex("([^;]+: )?found .+; accepted: .+ \\(see neritic .*--help\\)"));
+    for (const char* not_ours : {"required", "not in {", "expected", "excludes", "parser"})
+      EXPECT_THAT(said(words), ::testing::Not(HasSubstr(not_ours)));
+  }
 }
 
 TEST(CommandLine, AnEmptyFolderForTheResultsIsRefused) {

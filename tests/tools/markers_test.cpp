@@ -73,7 +73,7 @@ TEST_F(DiveMarkers, WhatCannotBeIsRefusedInOneLine) {
     return outcome.err;
   };
   EXPECT_EQ(refused("--realtime --record " + file("a.mcap") + " --markers 0"),
-            "neritic: --markers: found 0; accepted: a port, 1 to 65535, or udp://ADDRESS:PORT\n");
+            "neritic: --markers: found '0'; accepted: a port, 1 to 65535, or udp://ADDRESS:PORT\n");
   EXPECT_EQ(refused("--markers 47149"),
             "neritic: --markers: found a run in simulated time; accepted: --realtime, or a "
             "window\n");

@@ -67,8 +67,8 @@ TEST(RenderCommand, BadInputEndsInStatusTwoAndOneLineThatNamesIt) {
       {"render " + scene("pool.toml") + out + " --offset 0 -4.1e7 0", "4e+07"},
       {"render 'not\nthere.toml'" + out, "not\\nthere.toml"},
       {"render " + scene("pool.toml") + out + " --sensor nobody",
-       "--sensor: found nobody; accepted: camera, sonar"},
-      {"render " + scene("pool.toml") + out + " --sensor camera --sensor nobody", "found nobody"},
+       "--sensor: found 'nobody'; accepted: camera, sonar"},
+      {"render " + scene("pool.toml") + out + " --sensor camera --sensor nobody", "found 'nobody'"},
       {"render " + scene("pool.toml") + out + " --water 4X", "4X"},
       {"render " + scene("../models/shark.glb") + out + " --clip glide",
        "--clip: found \"glide\"; accepted: a clip of the model, by name or number: 0 swim"},
@@ -80,10 +80,10 @@ TEST(RenderCommand, BadInputEndsInStatusTwoAndOneLineThatNamesIt) {
        "--chart-cell: found '2000'; accepted: 0.001 to 1000"},
       // Not the seeds 2^64 - 4 and 2^64 - 1.
       {"render " + scene("pool.toml") + out + " --seed -4",
-       "--seed: found -4; accepted: a whole number"},
-      {"render " + scene("pool.toml") + out + " --seed 99999999999999999999", "--seed: found 9"},
+       "--seed: found '-4'; accepted: a whole number"},
+      {"render " + scene("pool.toml") + out + " --seed 99999999999999999999", "--seed: found '9"},
       {"dive " + scene("mission.toml") + " --headless --seed -4",
-       "--seed: found -4; accepted: a whole number"},
+       "--seed: found '-4'; accepted: a whole number"},
       {"render " + scene("mission.toml") + out + " --runs 2 --log log.csv",
        "--runs: found a flag of one run"},
       {"render " + scene("pool.toml") + out + " --chart-cell 1",
@@ -92,7 +92,7 @@ TEST(RenderCommand, BadInputEndsInStatusTwoAndOneLineThatNamesIt) {
        "--quality: found no sonar"},
       {"render " + scene("mission.toml") + out + " --log-rate 5", "--log-rate: found no --log"},
       {"rendre " + scene("pool.toml"), "rendre"},
-      {"render", "--out is required"},
+      {"render", "--out: found nothing; accepted: "},
       {"render" + out, "SCENE: found none"}};
   for (const auto& c : cases) {
     const Outcome outcome = neritic(c.arguments);

@@ -204,9 +204,9 @@ TEST_F(RenderData, ANameThatIsNoneOrThatNothingGivesIsRefusedWithTheNames) {
   EXPECT_EQ(said({"--only", "sonar", "--sensor", "eyes"}),
             "--only: found sonar; accepted: that with a sonar");
   EXPECT_EQ(said({"--only", "color,raw"}),
-            "--only: found raw; accepted: that with a camera of sensor = { bayer = \"rggb\" }");
+            "--only: found 'raw'; accepted: that with a camera of sensor = { bayer = \"rggb\" }");
   EXPECT_EQ(said({"--only", "linear"}),
-            "--only: found linear; accepted: that with a camera of linear = true");
+            "--only: found 'linear'; accepted: that with a camera of linear = true");
   EXPECT_NE(said({"--only", "depth", "--track-only"}).find("sonar, trajectory"), std::string::npos);
   EXPECT_NE(said({"--only", "trajectory", "--sheet"}).find("--sheet"), std::string::npos);
   ASSERT_TRUE(write_text(folder_ / "scene.toml",
@@ -262,7 +262,7 @@ TEST_F(RenderData, APictureCameraThatDoesNotSuitItsSideScanIsRefusedBeforeTheFir
             "sonar side: picture_camera: found down, which looks 90 degrees off straight down; "
             "accepted: at most 15 degrees");
   EXPECT_EQ(said("pitch_deg = -90\n", {}),
-            "sonar side: picture_camera: found down; accepted: a camera of the scene that --sensor "
+            "sonar side: picture_camera: found 'down'; accepted: a camera of the scene that --sensor "
             "names too");
   EXPECT_EQ(said("pitch_deg = -90\nrate_hz = 5\n", {"--sensor", "down", "--own-rates"}),
             "sonar side: picture_camera: found down at 5 Hz; accepted: a camera of 10 Hz or more, "

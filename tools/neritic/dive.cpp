@@ -302,7 +302,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::stri
   }
   NERITIC_TRY(const auto hud, hud_options(flags, physics.get(), unasked_hud(screen)));
   if (hud && !screen.headset && !fit_one_window(hud->layouts))
-    return refusal("--hud", fmt::format("\"{}\" in a window", flags.hud),
+    return refusal("--hud", fmt::format("'{}' in a window", flags.hud),
                    "console alone, which shows all of the others, or any of corner, mask, wrist");
   NERITIC_TRY(
       const auto view,

@@ -10,7 +10,7 @@ using namespace testbed;
 Result<Address> tcp_address(const std::string& flag, const std::string& text) {
   auto parsed = parse_address(text);
   if (!parsed.ok() || parsed->transport != Transport::kTcp)
-    return refusal(flag, printable(text), "tcp://ADDRESS:PORT");
+    return refusal(flag, fmt::format("'{}'", printable(text)), "tcp://ADDRESS:PORT");
   return std::move(parsed).value();
 }
 

@@ -14,7 +14,7 @@ Result<std::vector<hud::LayoutKind>> hud_layouts(const std::string& text) {
     const std::string name = text.substr(begin, end - begin);
     const auto layout = hud::layout_named(name);
     if (!layout)
-      return refusal("--hud", fmt::format("\"{}\"", name),
+      return refusal("--hud", fmt::format("'{}'", name),
                      "none, or any of corner, mask, wrist, console with commas between");
     if (std::ranges::find(out, *layout) == out.end()) out.push_back(*layout);
     begin = end + 1;
@@ -31,7 +31,7 @@ Result<std::size_t> find_diver(const std::string& name, const std::vector<Physic
     if (divers[i].name == name) return i;
     names.push_back(divers[i].name);
   }
-  return refusal("--diver", fmt::format("\"{}\"", name), fmt::format("{}", fmt::join(names, ", ")));
+  return refusal("--diver", fmt::format("'{}'", name), fmt::format("{}", fmt::join(names, ", ")));
 }
 
 }  // namespace

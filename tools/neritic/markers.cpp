@@ -21,7 +21,8 @@ Result<Address> marker_address(const std::string& place) {
       !place.empty() && std::ranges::all_of(place, [](char c) { return c >= '0' && c <= '9'; });
   auto parsed = parse_address(port ? "udp://127.0.0.1:" + place : place);
   if (!parsed.ok() || parsed->transport != Transport::kUdp)
-    return refusal("--markers", place, "a port, 1 to 65535, or udp://ADDRESS:PORT");
+    return refusal("--markers", fmt::format("'{}'", place),
+                   "a port, 1 to 65535, or udp://ADDRESS:PORT");
   return std::move(parsed).value();
 }
 

@@ -20,7 +20,7 @@ Result<NamedSensors> named_sensors(const std::vector<std::string>& names,
   add(scene.sonars, sensors.sonars);
   for (const std::string& name : names)
     if (std::ranges::count(known, name) == 0)
-      return refusal("--sensor", name,
+      return refusal("--sensor", fmt::format("'{}'", name),
                      known.empty() ? "none, since the scene has no sensors"
                                    : fmt::format("{}", fmt::join(known, ", ")));
   return sensors;

@@ -130,7 +130,7 @@ Result<DivePlanRequest> bare_request(const PlanFlags& flags) {
   NERITIC_TRY(request.conventions, conventions_asked(flags));
   NERITIC_TRY(const auto gf, percent_pair("gf", flags.gf));
   if (!(gf.first >= 0.01 && gf.first <= gf.second && gf.second <= 1.5))
-    return refusal("--gf", flags.gf,
+    return refusal("--gf", fmt::format("'{}'", flags.gf),
                    "1 to 150 percent, the first not above the second, such as 30/85");
   request.gf_low = gf.first;
   request.gf_high = gf.second;

@@ -106,11 +106,11 @@ Status check_camera_data(const scene::Scene& scene, const LoopSensors& sensors,
                                [&](std::size_t i) { return has(scene.cameras[i].terms); });
   };
   if (datasets.has(Dataset::kLinear) && !some([](const auto& terms) { return terms.linear; }))
-    return refusal("--only", "linear", "that with a camera of linear = true");
+    return refusal("--only", "'linear'", "that with a camera of linear = true");
   if (datasets.has(Dataset::kRaw) && !some([](const scene::CameraTerms& terms) {
         return terms.sensor && terms.sensor->bayer != scene::Bayer::kNone;
       }))
-    return refusal("--only", "raw", "that with a camera of sensor = { bayer = \"rggb\" }");
+    return refusal("--only", "'raw'", "that with a camera of sensor = { bayer = \"rggb\" }");
   if (!datasets.has(Dataset::kKitti)) return {};
   for (const std::size_t i : sensors.cameras)
     if (scene.cameras[i].terms.lens)
@@ -133,7 +133,8 @@ Status check_picture_cameras(const scene::Scene& scene, const LoopSensors& senso
       return scene.cameras[k].name == sonar.picture_camera;
     });
     if (at == sensors.cameras.end())
-      return refusal(where, sonar.picture_camera, "a camera of the scene that --sensor names too");
+      return refusal(where, fmt::format("'{}'", sonar.picture_camera),
+                     "a camera of the scene that --sensor names too");
     const scene::Camera& camera = scene.cameras[*at];
     if (sensors.own_rates && camera.rate_hz < sonar.rate_hz)
       return refusal(where, fmt::format("{} at {:g} Hz", camera.name, camera.rate_hz),

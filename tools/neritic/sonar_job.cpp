@@ -179,7 +179,8 @@ Status check_method(const SonarFlags& flags, bool plain) {
   if (flags.method != "gpu" && (!flags.device.empty() || flags.validation))
     return refusal("--device, --validate", "without --method gpu", "with it");
   if (flags.method == "reference" && !flags.gather.empty() && flags.gather != "published")
-    return refusal("--gather", flags.gather, "published with --method reference");
+    return refusal("--gather", fmt::format("'{}'", flags.gather),
+                   "published with --method reference");
   if (flags.method != "image") {
     if (flags.depth.empty()) return refusal("--depth", "none", "a depth image");
     if (!flags.picture.empty() || !flags.altitude.empty() || flags.incidence)

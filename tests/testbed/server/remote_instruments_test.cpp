@@ -114,7 +114,7 @@ TEST(RemoteInstrumentsTest, ADiverWhoIsNotThereIsRefusedInOneLine) {
   const auto refused = RemoteInstruments::connect(options);
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().code, ErrorCode::kBadInput);
-  EXPECT_EQ(refused.error().message.find("--diver: found \"nobody\"; accepted: "), 0u)
+  EXPECT_EQ(refused.error().message.find("--diver: found 'nobody'; accepted: "), 0u)
       << refused.error().message;
 }
 

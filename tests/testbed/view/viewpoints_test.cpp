@@ -207,7 +207,7 @@ TEST(Viewpoints, TheOwnViewOfASwumDiverTurnsByKeysAndMouse) {
 TEST(Viewpoints, AnUnknownViewIsRefusedWithTheKnownOnes) {
   const auto found = viewpoint_named("nose", shipped("pool.toml"));
   ASSERT_FALSE(found.ok());
-  EXPECT_EQ(found.error().message, "--view: found nose; accepted: camera, free");
+  EXPECT_EQ(found.error().message, "--view: found 'nose'; accepted: camera, free");
 }
 
 }  // namespace

@@ -1,55 +1,10 @@
 // Reads the command line of `neritic`. The files of this folder alone know the parser, which takes
 // long to compile.
-#include <algorithm>
-
-#include "engine/core/text.hpp"
 #include "engine/core/version.hpp"
+#include "tools/neritic/command_line/parser_words.hpp"
 #include "tools/neritic/command_line/subcommands.hpp"
 
 namespace neritic::tools {
-namespace {
-
-// The parser's words, but where it says less than is known: what a flag wants that was given
-// something else, and the flag that is nearest to one that there is not.
-std::string what_was_wrong(const CLI::App& app, const CLI::App& command,
-                           const std::vector<std::string>& arguments,
-                           const CLI::ParseError& error) {
-  const std::string said = error.what(), unconverted = "Could not convert: ";
-  if (const std::size_t value = said.find(" = ");
-      said.starts_with(unconverted) && value != said.npos) {
-    const std::string name = said.substr(unconverted.size(), value - unconverted.size());
-    if (const CLI::Option* option = command.get_option_no_throw(name))
-      return refusal(name, fmt::format("'{}'", printable(said.substr(value + 3))),
-                     fmt::format("a number: {}", option->get_description()))
-          .message;
-  }
-  // "--offset: At least 3 required but received 2"
-  const std::size_t least = said.find(": At least "), got = said.find(" required but received ");
-  if (least != said.npos && got != said.npos) {
-    const std::string name = said.substr(0, least);
-    if (const CLI::Option* option = command.get_option_no_throw(name))
-      return refusal(name,
-                     fmt::format("{} of {} values", said.substr(got + 23),
-                                 said.substr(least + 11, got - least - 11)),
-                     option->get_description())
-          .message;
-  }
-  if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) return said;
-  std::vector<std::string> names;
-  for (const CLI::App* of : {&command, &app})
-    for (const CLI::Option* option : of->get_options())
-      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  for (const std::string& argument : arguments) {
-    const std::string name = argument.substr(0, argument.find('='));
-    if (!name.starts_with("--") || name == "--" || std::ranges::find(names, name) != names.end())
-      continue;
-    return fmt::format("{}: no such flag; the nearest is {}", printable(name),
-                       nearest(name, std::vector<std::string_view>(names.begin(), names.end())));
-  }
-  return said;
-}
-
-}  // namespace
 
 Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments) {
   CLI::App app{"Neritic: divers and underwater robots together in one simulated sea", "neritic"};
@@ -97,7 +52,7 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
     if (app.get_subcommands().empty() && names_one) return no_command();
     const auto chosen = app.get_subcommands();
     const CLI::App& command = chosen.empty() ? app : *chosen.front();
-    return bad_input("{} (see neritic {}--help)", what_was_wrong(app, command, arguments, error),
+    return bad_input("{} (see neritic {}--help)", parser_words(app, command, arguments, error),
                      chosen.empty() ? "" : command.get_name() + " ");
   }
   return line;

@@ -123,7 +123,7 @@ void add_dive(CLI::App& app, CommandLine& line) {
   command->add_option("--bindings", flags->bindings,
                       "your own controls of some actions, a .toml (docs/headsets.md)");
   command->add_option("--refresh", flags->refresh_hz, "pictures a second of the headset")
-      ->check(CLI::Range(1.0, 1000.0));
+      ->check(between(1.0, 1000.0));
   command->add_option("--log", flags->files.log, "the log of vehicles and divers as a .csv");
   command->add_option(
       "--log-rate", flags->files.log_rate_hz,

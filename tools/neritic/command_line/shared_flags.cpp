@@ -22,7 +22,9 @@ std::string seed_number(const std::string& text) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool whole = error == std::errc() && end == text.data() + text.size();
-  return whole ? "" : found_accepted(text, "a whole number from 0 to 18446744073709551615");
+  return whole ? ""
+               : found_accepted(fmt::format("'{}'", text),
+                                "a whole number from 0 to 18446744073709551615");
 }
 
 void add_quality(CLI::App& command, std::string& quality) {
