@@ -10,7 +10,7 @@ import noise as N
 from glb import Glb, qmul, quat
 from mesh import box_uv, join, loft, Part, shade
 from sealife import ribbon
-from shapes import foil, revolve, sphere, tube
+from shapes import curve, foil, revolve, sphere, tube
 
 OUT = Path(__file__).resolve().parents[2] / "assets" / "models"
 
@@ -266,43 +266,81 @@ def ray():
     g.save(OUT / "ray.glb")
 
 
+def frill(path, width, normal, ripples, phase):
+    """A curtain along a path, smooth in the middle and ruffled towards both edges; v across it, -1 to 1, is in uv."""
+    across = np.linspace(-1, 1, 9)
+    t = np.gradient(path, axis=0)
+    t /= np.linalg.norm(t, axis=1, keepdims=True)
+    side = np.cross(t, normal)
+    side /= np.linalg.norm(side, axis=1, keepdims=True)
+    up = np.cross(side, t)
+    q = np.linspace(0, 1, len(path))[:, None]
+    uneven = q + 0.030 * np.sin(19 * q + phase) + 0.018 * np.sin(43 * q + 2 * phase)
+    wave = np.where(across < 0, np.sin(2 * np.pi * ripples * uneven + phase), np.sin(2 * np.pi * (ripples + 3) * uneven + 2 * phase))
+    lift = np.abs(across) ** 1.6 * wave * 0.24 * (1 + 0.5 * np.sin(11 * q + phase))
+    drift = 0.10 * np.abs(across) * np.cos(2 * np.pi * (0.5 * ripples) * q + phase)
+    w = np.asarray(width)[:, None, None] / 2
+    rows = path[:, None] + w * (across[None, :, None] * (1 + drift[:, :, None]) * side[:, None] + 2 * lift[:, :, None] * up[:, None])
+    uv = np.stack([np.tile(across, (len(path), 1)), np.tile(q, (1, 9))], 2)
+    i = (np.arange(len(path) - 1)[:, None] * 9 + np.arange(8)).ravel()
+    tri = np.concatenate([np.stack([i, i + 1, i + 10], 1), np.stack([i, i + 10, i + 9], 1)])
+    return Part(rows.reshape(-1, 3), tri, uv.reshape(-1, 2))
+
+
+def soft(part, rgb, alpha):
+    """Colours a frill or a ribbon of uv.x -1 to 1, clear at its edges."""
+    part = coloured(part, lambda p: np.tile(rgb, (len(p.pos), 1)), 80)
+    part.col[:, 3] = alpha(part.pos[:, 1]) * (1 - 0.94 * np.abs(part.uv[:, 0]) ** 1.5)
+    return part
+
+
 def jellyfish():
     """A compass jellyfish: bell of 0.24 m, mouth arms 0.8 m. It pulses by its rim. Nose (crown) is +y."""
-    n = 36
-    prof = [(0.004, 0.075), (0.035, 0.072), (0.066, 0.060), (0.092, 0.040), (0.110, 0.012), (0.118, -0.018), (0.114, -0.040), (0.100, -0.036), (0.086, -0.005), (0.060, 0.022), (0.03, 0.034), (0.004, 0.036)]
+    n = 64
+    knots = [(0.004, 0.075), (0.035, 0.072), (0.066, 0.060), (0.092, 0.040), (0.110, 0.012), (0.118, -0.018), (0.116, -0.040), (0.108, -0.042), (0.098, -0.024), (0.086, 0.002), (0.060, 0.030), (0.03, 0.044), (0.004, 0.048)]
+    prof = curve([(r, y, 0.0) for r, y in knots], 31)[:, :2]
     ang = np.arange(n) / n * 2 * np.pi
-    rings = [np.column_stack([r * np.cos(ang) * (1 + (0.035 * np.cos(16 * ang) if 4 < k < 8 else 0)), np.full(n, y), r * np.sin(ang)]) for k, (r, y) in enumerate(prof)]
+    lobes = N.smooth(0.098, 0.116, prof[:, 0]) * N.smooth(0.01, -0.035, prof[:, 1])  # 32 along the rim
+    rings = [np.column_stack([r * np.cos(ang), y - 0.006 * k * (0.5 + 0.5 * np.cos(32 * ang)), r * np.sin(ang)]) for (r, y), k in zip(prof, lobes)]
     bell = shade(loft(np.array(rings), (True, True)), 80)
     a = np.arctan2(bell.pos[:, 2], bell.pos[:, 0])
     r = np.hypot(bell.pos[:, 0], bell.pos[:, 2])
-    ray_ = N.smooth(0.35, 0.75, np.cos(16 * a)) * N.smooth(0.045, 0.075, r)
-    spot = N.smooth(0.026, 0.018, r)
+    inside = N.smooth(0.05, -0.05, bell.nrm[:, 1] * np.sign(bell.pos[:, 1] + 0.03))
+    ray_ = N.smooth(0.35, 0.75, np.cos(16 * a)) * N.smooth(0.045, 0.075, r) * (1 - inside)
+    spot = N.smooth(0.026, 0.018, r) * (1 - inside)
+    organ = N.smooth(0.5, 0.9, np.cos(4 * a)) * N.smooth(0.022, 0.034, r) * N.smooth(0.062, 0.048, r) * inside
+    rim = N.smooth(0.106, 0.118, r)
     c = N.mix(np.tile([0.66, 0.58, 0.48], (len(r), 1)), np.array([0.52, 0.24, 0.10]), np.maximum(0.85 * ray_, 0.7 * spot))
-    alpha = 0.16 + 0.34 * np.maximum(ray_, spot) + 0.14 * N.smooth(0.10, 0.118, r)
+    c = N.mix(c, np.array([0.72, 0.50, 0.36]), organ)
+    # Clear jelly: what lies behind and inside shows through both walls; the rim, seen along itself, is the palest.
+    alpha = 0.035 + 0.22 * np.maximum(ray_, spot) + 0.20 * rim + 0.22 * organ
     bell.col = np.column_stack([c, np.clip(alpha, 0, 1)])
-    rim = N.smooth(0.045, 0.112, r) * 0.9
     w = np.zeros((len(r), 6))
+    rim = N.smooth(0.045, 0.112, r) * 0.9
     w[:, 1], w[:, 0] = rim, 1 - rim
     bound(bell, w)
     rng = np.random.default_rng(2)
     arms, threads = [], []
     for k in range(4):
         b = k * np.pi / 2 + 0.4
-        q = np.linspace(0, 1, 26)[:, None]
-        p = np.column_stack([0.022 * np.cos(b) + 0.05 * q[:, 0] * np.cos(b + 2.5 * q[:, 0]), 0.03 - 0.72 * q[:, 0], 0.022 * np.sin(b) + 0.05 * q[:, 0] * np.sin(b + 2.5 * q[:, 0])])
-        width = 0.036 * (1 - q[:, 0]) ** 0.7 * (1 + 0.45 * np.sin(q[:, 0] * 46 + k)) + 0.002
-        arms.append(ribbon(p, width, np.array([np.cos(b + 1.2), 0.2 * np.sin(k), np.sin(b + 1.2)]), curl=0.35))
+        q = np.linspace(0, 1, 84)
+        out = 0.020 + 0.10 * q**1.3 * (1 + 0.3 * np.sin(1.9 * k))
+        turn = b + 0.25 * np.sin(4.0 * q + k)
+        p = np.column_stack([out * np.cos(turn), 0.036 - (0.62 + 0.05 * k) * q, out * np.sin(turn)])
+        width = 0.050 * N.smooth(-0.10, 0.12, q) * (1 - q) ** 0.6 + 0.003
+        arms.append(frill(p, width, np.array([np.cos(b + 1.0), 0.1, np.sin(b + 1.0)]), 13 + 2 * k, 1.3 * k))
     for k in range(24):
         b = k / 24 * 2 * np.pi
-        q = np.linspace(0, 1, 12)[:, None]
+        q = np.linspace(0, 1, 16)[:, None]
         ln = 0.42 + 0.30 * rng.random()
         p = np.column_stack([np.cos(b) * (0.112 + 0.035 * q[:, 0] ** 2) + 0.012 * np.sin(9 * q[:, 0] + k), -0.035 - ln * q[:, 0], np.sin(b) * (0.112 + 0.035 * q[:, 0] ** 2) + 0.012 * np.cos(8 * q[:, 0] + k)])
         # Wide and faint instead of thin and full: what is narrower than a pixel would break into dots.
-        threads.append(ribbon(p, np.linspace(0.007, 0.004, 12), np.array([-np.sin(b), 0.0, np.cos(b)])))
-    hang = join([coloured(join(arms), lambda p: np.tile([0.58, 0.47, 0.38], (len(p.pos), 1)), 80), coloured(join(threads), lambda p: np.tile([0.46, 0.30, 0.20], (len(p.pos), 1)), 80)])
-    reach = np.hypot(hang.pos[:, 0], hang.pos[:, 2])
-    faint = N.smooth(0.085, 0.105, reach)
-    hang.col[:, 3] = (0.55 - 0.33 * faint) * (1 - 0.75 * N.smooth(-0.25, -0.75, hang.pos[:, 1]))
+        threads.append(ribbon(p, np.linspace(0.009, 0.005, 16), np.array([-np.sin(b), 0.0, np.cos(b)]), -1.0, 1.0))
+    hang = join([
+        soft(join(arms), [0.62, 0.50, 0.40], lambda y: 0.34 * (1 - 0.7 * N.smooth(-0.20, -0.66, y))),
+        soft(join(threads), [0.46, 0.30, 0.20], lambda y: 0.40 * (1 - 0.75 * N.smooth(-0.25, -0.75, y))),
+    ])
+    hang.uv = 0.5 + 0.5 * hang.uv
     y = hang.pos[:, 1]
     w = np.zeros((len(y), 6))
     knots = np.array([-0.05, -0.25, -0.48, -0.72])
