@@ -100,6 +100,8 @@ Cells columns_of(const Payload& payload) {
             {"lungs_l", cell(1e3 * motion->lungs_m3)},
             {"tank", cell(static_cast<double>(motion->tank))},
             {"buttons", cell(static_cast<double>(motion->buttons))}};
+  if (const auto* human = std::get_if<HumanReading>(&payload))
+    return {{"heart_bpm", cell(human->heart_bpm)}, {"tank_bar", cell(1e-5 * human->gas_pa)}};
   const auto& computer = std::get<ComputerReading>(payload);
   return {{"ceiling_m", cell(computer.ceiling_m)},
           {"stop_m", cell(computer.stop_m)},
@@ -159,6 +161,7 @@ TEST(OutputSamples, EachStreamHasItsRateAndTheValuesOfTheLogWithoutGaps) {
       {"rov/altimeter", at(sensors.altimeter->rate_hz)},
       {"rov/usbl", at(sensors.usbl->rate_hz)},
       {"diver/motion", at(kDiverMotion_hz)},
+      {"diver/human", at(kHuman_hz)},
       {"diver/computer", at(1.0 / diver::kComputerSample_s)}};
   EXPECT_EQ(counts, expected);
 }
