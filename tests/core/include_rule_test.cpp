@@ -1,4 +1,5 @@
-// The folder table of ARCHITECTURE.md, checked against every #include of the sources.
+// The folder tables of ARCHITECTURE.md and testbed/README.md, checked against every #include of the
+// sources: no folder includes what its row does not name, and no row names what it does not need.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -12,83 +13,52 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::map<std::string, std::set<std::string>>& allowed() {
-  static const std::map<std::string, std::set<std::string>> table{
-      {"engine/core", {}},
-      {"engine/gpu", {"engine/core"}},
-      {"engine/graph", {"engine/core", "engine/gpu"}},
-      {"engine/draw2d", {"engine/core"}},
-      {"engine/scene", {"engine/core", "engine/recording"}},
-      {"engine/render", {"engine/core", "engine/gpu", "engine/graph", "engine/scene", "shared"}},
-      {"engine/xr", {"engine/core", "engine/gpu", "engine/graph", "engine/draw2d", "shared"}},
-      {"engine/sim", {"engine/core"}},
-      {"engine/net", {"engine/core"}},
-      {"engine/recording", {"engine/core"}},
-      {"sonar",
-       {"engine/core", "engine/gpu", "engine/graph", "engine/draw2d", "engine/scene", "shared"}},
-      {"diver", {"engine/core", "engine/sim", "engine/net"}},
-      {"rov", {"engine/core", "engine/sim", "engine/net"}},
-      {"hud",
-       {"engine/core", "engine/gpu", "engine/graph", "engine/draw2d", "engine/xr", "diver", "rov"}},
-      {"testbed/samples", {"engine/core", "engine/sim", "engine/recording", "rov", "diver"}},
-      {"testbed/simulation",
-       {"engine/core", "engine/scene", "testbed/samples", "engine/sim", "rov", "diver", "sonar"}},
-      {"testbed/record",
-       {"engine/core", "engine/scene", "testbed/samples", "engine/sim", "engine/recording", "rov",
-        "diver", "testbed/simulation"}},
-      {"testbed/motion",
-       {"engine/core", "engine/scene", "testbed/samples", "engine/sim", "rov", "diver",
-        "testbed/simulation"}},
-      {"testbed/devices",
-       {"engine/core", "engine/net", "engine/scene", "testbed/samples", "engine/sim", "rov",
-        "diver", "testbed/simulation"}},
-      {"testbed/simulators",
-       {"engine/core", "engine/net", "engine/scene", "testbed/samples", "engine/sim", "rov",
-        "diver", "testbed/simulation", "testbed/devices"}},
-      {"testbed/instruments",
-       {"engine/core", "engine/sim", "rov", "diver", "hud", "testbed/samples", "testbed/simulation",
-        "testbed/devices"}},
-      {"testbed/sensors",
-       {"testbed/samples", "engine/core", "engine/gpu", "engine/graph", "engine/scene",
-        "engine/render", "sonar", "shared"}},
-      {"testbed/output",
-       {"engine/core", "engine/gpu", "engine/graph", "engine/draw2d", "engine/scene",
-        "engine/render", "engine/recording", "sonar", "shared", "testbed/sensors"}},
-      {"testbed/loop",
-       {"engine/core", "engine/gpu", "engine/graph", "engine/scene", "engine/sim", "engine/xr",
-        "testbed/samples", "testbed/simulation", "testbed/motion", "testbed/record",
-        "testbed/sensors"}},
-      {"testbed/envs", {"engine/core", "engine/sim", "rov"}},
-      {"testbed/world",
-       {"engine/core", "engine/gpu", "engine/graph", "engine/scene", "engine/sim", "engine/xr",
-        "sonar", "rov", "diver", "testbed/samples", "testbed/simulation", "testbed/motion",
-        "testbed/record", "testbed/devices", "testbed/sensors", "testbed/loop",
-        "testbed/instruments"}},
-      {"testbed/server",
-       {"engine/core", "engine/net", "hud", "testbed/world", "testbed/instruments"}},
-      {"testbed/view",
-       {"engine/core",
-        "engine/gpu",
-        "engine/graph",
-        "engine/draw2d",
-        "engine/scene",
-        "engine/render",
-        "engine/sim",
-        "engine/xr",
-        "sonar",
-        "rov",
-        "diver",
-        "hud",
-        "shared",
-        "testbed/samples",
-        "testbed/simulation",
-        "testbed/motion",
-        "testbed/record",
-        "testbed/devices",
-        "testbed/instruments",
-        "testbed/sensors",
-        "testbed/loop"}},
-      {"shaders/shared", {"shared"}}};
+using Folders = std::set<std::string>;
+using Table = std::map<std::string, Folders>;  // what a folder may include
+
+constexpr const char* kEverything = "everything";
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, at);) {
+    const auto first = part.find_first_not_of(" `"), last = part.find_last_not_of(" `");
+    parts.push_back(first == part.npos ? "" : part.substr(first, last - first + 1));
+  }
+  return parts;
+}
+
+// A name in a table as the beginning of an include: "gpu" is engine/gpu, "samples" in the testbed's
+// table testbed/samples, and the headers of shaders are included as "shared/...".
+std::string folder_named(const std::string& name, const std::string& parent) {
+  if (name == "shaders" || name == "shaders/shared") return "shared";
+  if (fs::is_directory(test::source_dir() / parent / name)) return parent + "/" + name;
+  EXPECT_TRUE(fs::is_directory(test::source_dir() / name)) << "a table names the folder " << name;
+  return name;
+}
+
+// The rows of the file's first table whose heading begins with "| folder |". parent: of names that
+// are no path from the top.
+Table table_of(const char* file, const std::string& parent) {
+  Table table;
+  std::istringstream lines(read_text(test::source_dir() / file).value());
+  bool inside = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("| folder |")) {
+      inside = true;
+    } else if (inside && !line.starts_with("|")) {
+      break;
+    } else if (inside && !line.starts_with("|---")) {
+      const auto cells = split(line, '|');  // the first is empty
+      EXPECT_GE(cells.size(), 4u) << file << ": " << line;
+      if (cells.size() < 4 || cells[3] == kEverything || cells[1].ends_with('*')) continue;
+      Folders may;
+      for (const std::string& name : split(cells[3], ','))
+        if (!name.empty() && name != "-") may.insert(folder_named(name, parent));
+      for (const std::string& row : split(cells[1], ','))
+        table[row == "shaders" ? row : folder_named(row, parent)] = may;
+    }
+  }
   return table;
 }
 
@@ -110,28 +80,59 @@ std::string included(const std::string& line) {
   return line.substr(from, line.find('"', from) - from);
 }
 
-TEST(IncludeRule, FoldersIncludeOnlyWhatTheTableAllows) {
-  const std::set<std::string> ours{"engine", "shared",  "sonar", "diver", "rov",
-                                   "hud",    "testbed", "tools", "tests", "shaders"};
-  int files = 0;
-  for (const auto& [folder, may] : allowed()) {
-    const fs::path root = test::source_dir() / folder;
-    if (!fs::is_directory(root)) continue;
-    for (const auto& entry : fs::recursive_directory_iterator(root)) {
-      const std::string extension = entry.path().extension();
-      if (extension != ".hpp" && extension != ".cpp" && extension != ".h") continue;
-      ++files;
-      std::istringstream text(read_text(entry.path()).value());
-      for (std::string line; std::getline(text, line);) {
-        const std::string path = included(line);
-        if (path.empty()) continue;
-        const std::string target = folder_of(path);
-        if (!ours.contains(target.substr(0, target.find('/'))) || target == folder) continue;
-        EXPECT_TRUE(may.contains(target)) << entry.path() << " includes " << path;
-      }
+// The other folders of ours that the folder's sources include, each with one file that does.
+std::map<std::string, std::string> includes_of(const std::string& folder, int& files) {
+  const Folders ours{"engine", "shared",  "sonar", "diver", "rov",
+                     "hud",    "testbed", "tools", "tests", "shaders"};
+  std::map<std::string, std::string> found;
+  const fs::path root = test::source_dir() / (folder == "shared" ? "shaders/shared" : folder);
+  for (const auto& entry : fs::recursive_directory_iterator(root)) {
+    const std::string extension = entry.path().extension();
+    if (extension != ".hpp" && extension != ".cpp" && extension != ".h") continue;
+    ++files;
+    std::istringstream text(read_text(entry.path()).value());
+    for (std::string line; std::getline(text, line);) {
+      const std::string path = included(line), target = folder_of(path);
+      if (ours.contains(target.substr(0, target.find('/'))) && target != folder)
+        found.emplace(target, entry.path().string() + " includes " + path);
     }
   }
-  EXPECT_GT(files, 50);
+  return found;
+}
+
+int check(const Table& table, const Folders& all_may) {
+  int files = 0;
+  for (const auto& [folder, may] : table) {
+    const auto includes = includes_of(folder, files);
+    for (const auto& [target, where] : includes)
+      EXPECT_TRUE(may.contains(target) || all_may.contains(target)) << where;
+    for (const std::string& target : may)
+      EXPECT_TRUE(includes.contains(target) || target == folder)
+          << "the row of " << folder << " names " << target << ", which it does not include";
+  }
+  return files;
+}
+
+void expect_rows(const Table& table, const std::string& parent) {
+  for (const auto& entry : fs::directory_iterator(test::source_dir() / parent))
+    if (entry.is_directory()) {
+      const std::string folder = parent + "/" + entry.path().filename().string();
+      EXPECT_TRUE(table.contains(folder)) << "no row for " << folder;
+    }
+}
+
+TEST(IncludeRule, FoldersIncludeWhatTheTableOfTheArchitectureNames) {
+  const Table table = table_of("ARCHITECTURE.md", "engine");
+  expect_rows(table, "engine");
+  for (const char* folder : {"sonar", "rov", "diver", "hud", "shared"})
+    EXPECT_TRUE(table.contains(folder)) << "no row for " << folder;
+  EXPECT_GT(check(table, {}), 300);
+}
+
+TEST(IncludeRule, FoldersOfTheTestbedIncludeWhatItsTableNames) {
+  const Table table = table_of("testbed/README.md", "testbed");
+  expect_rows(table, "testbed");
+  EXPECT_GT(check(table, {"engine/core"}), 300);
 }
 
 }  // namespace
