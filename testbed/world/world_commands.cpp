@@ -35,14 +35,16 @@ Status check_most(const std::string& where, std::span<const double> values, doub
   return {};
 }
 
-// A command's numbers as those of a payload's fields, and the kind of that.
-struct Said {
-  PayloadKind kind = PayloadKind::kEvent;
-  std::vector<double> values;
-};
+// Of a gripper or a regulator.
+Status check_choices(const std::string& where, std::span<const double> values) {
+  for (const double value : values)
+    if (value != 0.0 && value != 1.0 && value != 2.0)
+      return refusal(where, fmt::format("{}", value), "0, 1 or 2");
+  return {};
+}
 
-Result<Said> vehicle_command(const PhysicsVehicle& vehicle, const std::string& where,
-                             const std::string& kind, std::span<const double> given) {
+Result<WantedPayload> vehicle_command(const PhysicsVehicle& vehicle, const std::string& where,
+                                      const std::string& kind, std::span<const double> given) {
   std::vector<double> values(given.begin(), given.end());
   const std::size_t thrusters = vehicle.vehicle.thruster_count;
   if (kind == "goto") {
@@ -53,18 +55,18 @@ Result<Said> vehicle_command(const PhysicsVehicle& vehicle, const std::string& w
     values.erase(values.begin() + 3);
     values.resize(6, 0.0);
     values.push_back(yaw);
-    return Said{PayloadKind::kSetpoint, values};
+    return WantedPayload{PayloadKind::kSetpoint, values};
   }
   if (kind == "velocity") {
     NERITIC_TRY_STATUS(check_count(where, values.size(), 4, 4));
     NERITIC_TRY_STATUS(check_most(where, std::span(values).first(3), kMost_m_s, "m/s"));
     NERITIC_TRY_STATUS(check_most(where, std::span(values).last(1), kMost_m_s, "rad/s"));
-    return Said{PayloadKind::kVelocity, values};
+    return WantedPayload{PayloadKind::kVelocity, values};
   }
   if (kind == "wrench") {
     NERITIC_TRY_STATUS(check_count(where, values.size(), 6, 6));
     NERITIC_TRY_STATUS(check_most(where, values, kStrongest, "N or N m"));
-    return Said{PayloadKind::kWrench, values};
+    return WantedPayload{PayloadKind::kWrench, values};
   }
   NERITIC_TRY_STATUS(check_count(where, values.size(), thrusters, thrusters));
   if (kind == "pwm") {
@@ -76,7 +78,7 @@ Result<Said> vehicle_command(const PhysicsVehicle& vehicle, const std::string& w
   }
   if (kind == "thrusters") NERITIC_TRY_STATUS(check_most(where, values, kStrongest, "N"));
   values.resize(rov::kMaxThrusters, 0.0);
-  return Said{kind == "faults" ? PayloadKind::kFault : PayloadKind::kThrusters, values};
+  return WantedPayload{kind == "faults" ? PayloadKind::kFault : PayloadKind::kThrusters, values};
 }
 
 constexpr std::array kVehicleCommands{"goto", "velocity", "wrench", "thrusters", "pwm", "faults"};
@@ -87,8 +89,8 @@ constexpr std::array kDiverCommands{
     std::pair("breath", PayloadKind::kBreath),    std::pair("heart", PayloadKind::kHeart),
     std::pair("gas", PayloadKind::kGas)};
 
-Result<Said> diver_command(const std::string& where, const std::string& kind,
-                           std::span<const double> given) {
+Result<WantedPayload> diver_command(const std::string& where, const std::string& kind,
+                                    std::span<const double> given) {
   std::vector<double> values(given.begin(), given.end());
   const auto found =
       std::ranges::find_if(kDiverCommands, [&](const auto& c) { return kind == c.first; });
@@ -102,7 +104,7 @@ Result<Said> diver_command(const std::string& where, const std::string& kind,
   const bool joints = found->second == PayloadKind::kBodyJoints;
   NERITIC_TRY_STATUS(check_count(where, values.size(), joints ? count - 1 : count, count));
   values.resize(count, 0.0);
-  return Said{found->second, values};
+  return WantedPayload{found->second, values};
 }
 
 // A tank that the diver has.
@@ -114,8 +116,8 @@ Status check_tank(const PhysicsHuman& human, const std::string& where, double va
                              : std::string("a diver with tanks"));
 }
 
-Result<Said> object_command(const PhysicsObject& object, const std::string& where,
-                            const std::string& kind, std::span<const double> given) {
+Result<WantedPayload> object_command(const PhysicsObject& object, const std::string& where,
+                                     const std::string& kind, std::span<const double> given) {
   if (kind == "joints" && object.limbs) return diver_command(where, kind, given);
   if (kind == "joints")
     return refusal(where, "an object without limbs", "one whose model has the 16 nodes of a diver");
@@ -129,7 +131,7 @@ Result<Said> object_command(const PhysicsObject& object, const std::string& wher
   const double measured = values.size() == 13 ? 1.0 : 0.0;
   values.resize(13, 0.0);
   values.push_back(measured);
-  return Said{PayloadKind::kObjectPose, values};
+  return WantedPayload{PayloadKind::kObjectPose, values};
 }
 
 // A message of bytes.
@@ -216,7 +218,7 @@ Status World::Parts::hand_over(StreamId events, std::uint64_t group, Authority a
                                 .authority = static_cast<std::uint64_t>(authority),
                                 .source = source,
                                 .hold_s = hold_s},
-                          std::llround(newest().time_s * 1e9)));
+                          now_ns()));
   if (live)
     holders[key] = {source, hold_s};
   else
@@ -224,105 +226,121 @@ Status World::Parts::hand_over(StreamId events, std::uint64_t group, Authority a
   return {};
 }
 
-Status World::command(const std::string& name, const std::string& kind,
-                      std::span<const double> values, double hold_s, const std::string& from) {
-  Parts& parts = *parts_;
-  NERITIC_TRY(const std::size_t index, agent(name));
-  const std::string where = name + ": " + kind;
-  if (!(hold_s >= 0.0 && hold_s <= kHoldForever_s))
-    return refusal(where + ": hold_s", fmt::format("{}", hold_s), "0 (for ever) or more seconds");
-  NERITIC_TRY_STATUS(check_finite(where, values));
-  const PhysicsWorld& world = parts.world();
-  const std::size_t vehicles = world.vehicles().size(), humans = world.humans().size();
-  if (kind == "send") {
-    const std::uint64_t modem = parts.agents[index].modem;
-    if (modem == 0)
-      return refusal(where, "an agent without a modem", "one whose object has the table modem");
-    NERITIC_TRY(const ModemSend message, message_of(where, world.modems().all().size(), values));
-    const PhysicsModem& owner = world.modems().all()[modem - 1];
-    NERITIC_TRY(const SourceId source, parts.source(from));
-    return parts.push(source, world.streams().id(owner.sort, owner.owner, PayloadKind::kSend),
-                      message, time_ns());
+TimeNs World::Parts::now_ns() const {
+  return std::llround(newest().time_s * 1e9);
+}
+
+AgentOwner World::Parts::owner_of(std::size_t agent) const {
+  const std::size_t vehicles = world().vehicles().size(), humans = world().humans().size();
+  if (agent < vehicles) return {OwnerSort::kVehicle, static_cast<std::uint32_t>(agent)};
+  agent -= vehicles;
+  if (agent < humans) return {OwnerSort::kDiver, static_cast<std::uint32_t>(agent)};
+  return {OwnerSort::kObject, static_cast<std::uint32_t>(agent - humans)};
+}
+
+// Into a stream of the owner that enters from any source, without authority.
+Status World::Parts::push_alone(const AgentOwner& owner, const Payload& payload,
+                                const std::string& from) {
+  NERITIC_TRY(const SourceId id, source(from));
+  const StreamId stream =
+      world().streams().id(owner.sort, owner.number, static_cast<PayloadKind>(payload.index()));
+  return push(id, stream, payload, now_ns());
+}
+
+Status World::Parts::send(std::size_t agent, const GivenCommand& command) {
+  const std::uint64_t modem = agents[agent].modem;
+  if (modem == 0)
+    return refusal(command.where, "an agent without a modem",
+                   "one whose object has the table modem");
+  const auto modems = world().modems().all();
+  NERITIC_TRY(const ModemSend message, message_of(command.where, modems.size(), command.values));
+  const PhysicsModem& by = modems[modem - 1];
+  return push_alone({by.sort, by.owner}, message, command.from);
+}
+
+Status World::Parts::grip(std::size_t agent, const GivenCommand& command) {
+  const AgentOwner owner = owner_of(agent);
+  if (owner.sort == OwnerSort::kObject || !world().things().find(owner.sort, owner.number))
+    return refusal(command.where, "an agent without a gripper or hands",
+                   "one whose object has the table gripper or hands");
+  NERITIC_TRY_STATUS(check_count(command.where, command.values.size(), 1, 1));
+  NERITIC_TRY_STATUS(check_choices(command.where, command.values));
+  return push_alone(owner, ros::read_values(PayloadKind::kGrip, command.values), command.from);
+}
+
+Status World::Parts::regulator(std::size_t agent, const GivenCommand& command) {
+  const AgentOwner owner = owner_of(agent);
+  if (owner.sort != OwnerSort::kDiver || !world().humans()[owner.number].regulator)
+    return refusal(command.where, "an agent without regulators",
+                   "a diver whose object has the table regulator");
+  NERITIC_TRY_STATUS(check_count(command.where, command.values.size(), 2, 2));
+  NERITIC_TRY_STATUS(check_choices(command.where, command.values));
+  return push_alone(owner, ros::read_values(PayloadKind::kRegulator, command.values), command.from);
+}
+
+// A command that takes the authority over a group: its payload's kind, and its numbers.
+Result<WantedPayload> World::Parts::wanted(const AgentOwner& owner, const std::string& kind,
+                                           const GivenCommand& command) const {
+  const std::string& where = command.where;
+  const std::span<const double> values = command.values;
+  switch (owner.sort) {
+    case OwnerSort::kVehicle:
+      if (std::ranges::find(kVehicleCommands, kind) == kVehicleCommands.end())
+        return unknown_name(world().vehicles()[owner.number].name, kind,
+                            {kVehicleCommands.begin(), kVehicleCommands.end()});
+      return vehicle_command(world().vehicles()[owner.number], where, kind, values);
+    case OwnerSort::kDiver: {
+      NERITIC_TRY(WantedPayload said, diver_command(where, kind, values));
+      if (said.kind == PayloadKind::kGas)
+        NERITIC_TRY_STATUS(check_tank(world().humans()[owner.number], where, said.values[0]));
+      return said;
+    }
+    default:
+      return object_command(world().objects()[owner.number], where, kind, values);
   }
-  if (kind == "grip") {
-    const bool diver = index >= vehicles;
-    const auto number = static_cast<std::uint32_t>(index - (diver ? vehicles : 0));
-    const OwnerSort by = diver ? OwnerSort::kDiver : OwnerSort::kVehicle;
-    if (index >= vehicles + humans || !world.things().find(by, number))
-      return refusal(where, "an agent without a gripper or hands",
-                     "one whose object has the table gripper or hands");
-    NERITIC_TRY_STATUS(check_count(where, values.size(), 1, 1));
-    if (values[0] != 0.0 && values[0] != 1.0 && values[0] != 2.0)
-      return refusal(where, fmt::format("{}", values[0]), "0, 1 or 2");
-    NERITIC_TRY(const SourceId source, parts.source(from));
-    return parts.push(source, world.streams().id(by, number, PayloadKind::kGrip),
-                      ros::read_values(PayloadKind::kGrip, values), time_ns());
-  }
-  if (kind == "regulator") {
-    if (index < vehicles || index >= vehicles + humans ||
-        !world.humans()[index - vehicles].regulator)
-      return refusal(where, "an agent without regulators",
-                     "a diver whose object has the table regulator");
-    NERITIC_TRY_STATUS(check_count(where, values.size(), 2, 2));
-    for (const double value : values)
-      if (value != 0.0 && value != 1.0 && value != 2.0)
-        return refusal(where, fmt::format("{}", value), "0, 1 or 2");
-    NERITIC_TRY(const SourceId source, parts.source(from));
-    return parts.push(
-        source,
-        world.streams().id(OwnerSort::kDiver, static_cast<std::uint32_t>(index - vehicles),
-                           PayloadKind::kRegulator),
-        ros::read_values(PayloadKind::kRegulator, values), time_ns());
-  }
-  OwnerSort sort = OwnerSort::kVehicle;
-  std::uint32_t owner = static_cast<std::uint32_t>(index);
-  Said said;
-  if (index < vehicles) {
-    if (std::ranges::find(kVehicleCommands, kind) == kVehicleCommands.end())
-      return unknown_name(name, kind, {kVehicleCommands.begin(), kVehicleCommands.end()});
-    NERITIC_TRY(said, vehicle_command(world.vehicles()[index], where, kind, values));
-  } else if (index < vehicles + humans) {
-    sort = OwnerSort::kDiver;
-    owner -= static_cast<std::uint32_t>(vehicles);
-    NERITIC_TRY(said, diver_command(where, kind, values));
-    if (said.kind == PayloadKind::kGas)
-      NERITIC_TRY_STATUS(check_tank(world.humans()[owner], where, said.values[0]));
-  } else {
-    sort = OwnerSort::kObject;
-    owner -= static_cast<std::uint32_t>(vehicles + humans);
-    NERITIC_TRY(said, object_command(world.objects()[owner], where, kind, values));
-  }
-  NERITIC_TRY_STATUS(ros::check_values(said.kind, said.values, where));
-  const Payload payload = ros::read_values(said.kind, said.values);
-  if (!plausible(payload)) return ros::implausible(said.kind, said.values, where);
-  const StreamId stream = world.streams().id(sort, owner, said.kind);
-  const StreamId events = world.streams().id(sort, owner, PayloadKind::kEvent);
-  NERITIC_TRY(const SourceId source, parts.source(from));
-  const double hold = hold_s == 0.0 ? kHoldForever_s : hold_s;
-  const std::size_t group = group_of(said.kind).value();
+}
+
+Status World::Parts::steer(std::size_t agent, const std::string& kind, const GivenCommand& command,
+                           double hold_s) {
+  const AgentOwner owner = owner_of(agent);
+  NERITIC_TRY(const WantedPayload act, wanted(owner, kind, command));
+  NERITIC_TRY_STATUS(ros::check_values(act.kind, act.values, command.where));
+  const Payload payload = ros::read_values(act.kind, act.values);
+  if (!plausible(payload)) return ros::implausible(act.kind, act.values, command.where);
+  const StreamTable& table = world().streams();
+  const StreamId events = table.id(owner.sort, owner.number, PayloadKind::kEvent);
+  NERITIC_TRY(const SourceId id, source(command.from));
+  const std::size_t group = group_of(act.kind).value();
   // A wrench acts before a setpoint: for a setpoint it goes.
   constexpr auto kWrench = static_cast<std::uint64_t>(VehicleGroup::kWrench);
-  if (sort == OwnerSort::kVehicle && group == static_cast<std::size_t>(VehicleGroup::kSetpoint) &&
-      parts.holders.contains({events, kWrench}))
-    NERITIC_TRY_STATUS(
-        parts.hand_over(events, kWrench, Authority::kAutopilot, source, kVehicleHold_s[0]));
-  NERITIC_TRY_STATUS(parts.hand_over(events, group, Authority::kLive, source, hold));
-  return parts.push(source, stream, payload, time_ns());
+  if (owner.sort == OwnerSort::kVehicle &&
+      group == static_cast<std::size_t>(VehicleGroup::kSetpoint) &&
+      holders.contains({events, kWrench}))
+    NERITIC_TRY_STATUS(hand_over(events, kWrench, Authority::kAutopilot, id, kVehicleHold_s[0]));
+  NERITIC_TRY_STATUS(hand_over(events, group, Authority::kLive, id, hold_s));
+  return push(id, table.id(owner.sort, owner.number, act.kind), payload, now_ns());
+}
+
+Status World::command(const std::string& name, const std::string& kind,
+                      std::span<const double> values, double hold_s, const std::string& from) {
+  NERITIC_TRY(const std::size_t index, agent(name));
+  const GivenCommand command{name + ": " + kind, values, from};
+  if (!(hold_s >= 0.0 && hold_s <= kHoldForever_s))
+    return refusal(command.where + ": hold_s", fmt::format("{}", hold_s),
+                   "0 (for ever) or more seconds");
+  NERITIC_TRY_STATUS(check_finite(command.where, values));
+  if (kind == "send") return parts_->send(index, command);
+  if (kind == "grip") return parts_->grip(index, command);
+  if (kind == "regulator") return parts_->regulator(index, command);
+  return parts_->steer(index, kind, command, hold_s == 0.0 ? kHoldForever_s : hold_s);
 }
 
 Status World::release(const std::string& name, const std::string& from) {
   Parts& parts = *parts_;
   NERITIC_TRY(const std::size_t index, agent(name));
+  const AgentOwner owner = parts.owner_of(index);
   const PhysicsWorld& world = parts.world();
-  const std::size_t vehicles = world.vehicles().size(), humans = world.humans().size();
-  const OwnerSort sort = index < vehicles            ? OwnerSort::kVehicle
-                         : index < vehicles + humans ? OwnerSort::kDiver
-                                                     : OwnerSort::kObject;
-  const auto owner =
-      static_cast<std::uint32_t>(index - (sort == OwnerSort::kVehicle ? 0
-                                          : sort == OwnerSort::kDiver ? vehicles
-                                                                      : vehicles + humans));
-  const StreamId events = world.streams().id(sort, owner, PayloadKind::kEvent);
+  const StreamId events = world.streams().id(owner.sort, owner.number, PayloadKind::kEvent);
   NERITIC_TRY(const SourceId source, parts.source(from));
   std::vector<std::uint64_t> groups;
   for (const auto& [key, holder] : parts.holders)
@@ -331,7 +349,7 @@ Status World::release(const std::string& name, const std::string& from) {
     SourceId chosen = 0;
     double hold_s = 0.0;
     const Authority authority =
-        chosen_authority(world.start_inputs(), sort, owner, group, chosen, hold_s);
+        chosen_authority(world.start_inputs(), owner.sort, owner.number, group, chosen, hold_s);
     NERITIC_TRY_STATUS(parts.push(source, events,
                                   Event{.group = group,
                                         .authority = static_cast<std::uint64_t>(authority),

@@ -68,6 +68,23 @@ class ImageReceiver final : public ImageSink {
   bool alone_ = true;
 };
 
+// A command before it is known to make sense: where it is refused, its numbers, who gives it.
+struct GivenCommand {
+  std::string where;
+  std::span<const double> values;
+  const std::string& from;
+};
+// A command's numbers as those of a payload's fields, and the kind of that.
+struct WantedPayload {
+  PayloadKind kind = PayloadKind::kEvent;
+  std::vector<double> values;
+};
+// An agent as the owner of streams.
+struct AgentOwner {
+  OwnerSort sort = OwnerSort::kVehicle;
+  std::uint32_t number = 0;
+};
+
 struct World::Parts {
   WorldOptions options;
   std::string path;
@@ -110,6 +127,17 @@ struct World::Parts {
   Status renew_consumer();
   Result<SourceId> source(const std::string& name);
   Status push(SourceId source, StreamId stream, const Payload& payload, TimeNs captured_ns);
+  AgentOwner owner_of(std::size_t agent) const;
+  TimeNs now_ns() const;  // simulated
+  Status push_alone(const AgentOwner& owner, const Payload& payload, const std::string& from);
+  Status send(std::size_t agent, const GivenCommand& command);
+  Status grip(std::size_t agent, const GivenCommand& command);
+  Status regulator(std::size_t agent, const GivenCommand& command);
+  Result<WantedPayload> wanted(const AgentOwner& owner, const std::string& kind,
+                               const GivenCommand& command) const;
+  // With the authority over its group, which it takes.
+  Status steer(std::size_t agent, const std::string& kind, const GivenCommand& command,
+               double hold_s);
   Status hand_over(StreamId events, std::uint64_t group, Authority authority, SourceId source,
                    double hold_s);
 };
