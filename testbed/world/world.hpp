@@ -188,8 +188,8 @@ class World {
   Status set_link(std::uint32_t stream, const LinkOptions& link);
 
   // Images of that stream from the next tick on, at the multiples of the period of rate_hz or of
-  // the sensor's own rate (0), counted from time 0. The first one makes the device. keep: as above;
-  // else only the newest one waits.
+  // the sensor's own rate (0), counted from time 0, and at most one a step. The first one makes the
+  // device. keep: as above; else only the newest one waits.
   // kBadInput: no stream of images, or more than the sensor's rate.
   Status want_image(std::uint32_t stream, double rate_hz = 0.0, bool keep = false);
   Status check_image(std::uint32_t stream, double rate_hz) const;  // whether it would be refused

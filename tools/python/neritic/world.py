@@ -183,8 +183,8 @@ class World:
     def images(self, *streams: str, rate: float = 0.0, keep: bool = False) -> None:
         """Asks for images of these streams from the next tick on, "eye/color" or "rov_sonar/echoes", at the multiples
         of 1 / `rate` s, up to the sensor's own rate (0: that one), counted from time 0: a tick that ends at such a time gives
-        that image. The first call makes a Vulkan device. keep: callbacks get every image, not the newest of each
-        tick alone."""
+        that image. At most one image a step comes: of a faster sensor as many a second as the physics has steps. The first
+        call makes a Vulkan device. keep: callbacks get every image, not the newest of each tick alone."""
         rate, keep = float(numbers("images: rate", rate, 1)[0]), flag("images: keep", keep)
         for stream in streams:
             self._core.want_image(self._place(stream), rate, keep)
