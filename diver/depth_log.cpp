@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 
 #include "diver/gas_label.hpp"
 #include "diver/physio_csv.hpp"
@@ -16,6 +15,7 @@ namespace {
 constexpr std::size_t kMostSamples = 10'000'000;
 constexpr std::size_t kMostVehicles = 8;  // that are named
 constexpr double kMostAbove_m = 1.0;      // the surface: waves, and sensors that drift
+constexpr double kAtSurface_m = 0.5;      // a log that comes as near has been at the surface
 
 bool read_cell(std::string_view cell, double& value) {
   const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
@@ -55,6 +55,8 @@ class LogReader {
           fmt::format("{}", vehicles_.empty() ? std::string("a file with a column vehicle")
                                               : fmt::format("{}", fmt::join(vehicles_, ", "))));
     if (log_.samples.empty()) return refusal(name_, "no sample", "at least one");
+    NERITIC_TRY_STATUS(end_of_gap(log_.samples.size()));
+    NERITIC_TRY_STATUS(add_notes());
     return std::move(log_);
   }
 
@@ -102,12 +104,13 @@ class LogReader {
                                  log_.samples.back().time_s / unit_s_),
                      "times that do not go back");
     if (cells[depth_].empty())
-      sample.depth_m = std::numeric_limits<double>::quiet_NaN();
+      sample.failed = true;
     else if (!read_cell(cells[depth_], sample.depth_m))
       return refusal(fmt::format("{}: line {}", name_, line_),
                      fmt::format("depth '{}'", shown(cells[depth_])), "a number");
     if (upwards_) sample.depth_m = 0.0 - sample.depth_m;  // not -0
-    if (sample.depth_m < -kMostAbove_m)
+    sample.failed = sample.failed || !(sample.depth_m <= kDeepestLogged_m);
+    if (!sample.failed && sample.depth_m < -kMostAbove_m)
       return refusal(fmt::format("{}: line {}", name_, line_),
                      fmt::format("depth '{}'", shown(cells[depth_])),
                      upwards_ ? "up to 1 with --depths-up, where depths are negative"
@@ -115,7 +118,84 @@ class LogReader {
     if (gas_ < width_) NERITIC_TRY_STATUS(read_gas(cells[gas_], sample));
     if (log_.samples.size() == kMostSamples)
       return refusal(name_, "more samples", fmt::format("up to {}", kMostSamples));
+    NERITIC_TRY_STATUS(add(sample, cells[depth_]));
+    return {};
+  }
+
+  Status add(const DepthSample& sample, std::string_view depth) {
+    const std::size_t at = log_.samples.size();
+    if (at > 0 && sample.time_s - log_.samples.back().time_s > longest_s_) {
+      longest_s_ = sample.time_s - log_.samples.back().time_s;
+      longest_from_ = last_line_;
+      longest_to_ = line_;
+    }
+    last_line_ = line_;
+    if (sample.failed) {
+      if (gap_ == kNoGap) {
+        gap_ = at;
+        gap_line_ = line_;
+        gap_depth_ = shown(depth);
+      }
+      if (log_.failed++ == 0) {
+        failed_line_ = line_;
+        failed_depth_ = gap_depth_;
+      }
+    }
     log_.samples.push_back(sample);
+    return sample.failed ? Status() : end_of_gap(at);
+  }
+
+  // Samples from gap_ to this one, which is good or one past the last, get depths.
+  Status end_of_gap(std::size_t end) {
+    if (gap_ == kNoGap) return {};
+    std::vector<DepthSample>& samples = log_.samples;
+    const bool before = gap_ > 0, after = end < samples.size();
+    if (!before && !after)
+      return refusal(name_, fmt::format("no depth that a dive has in {} samples", samples.size()),
+                     "a log with depths in metres");
+    const DepthSample &from = samples[before ? gap_ - 1 : end],
+                      &to = samples[after ? end : gap_ - 1];
+    const double start_s = before ? from.time_s : samples.front().time_s;
+    const double gap_s = (after ? to : samples.back()).time_s - start_s;
+    if (gap_s > kLongestGap_s)
+      return refusal(fmt::format("{}: line {}", name_, gap_line_),
+                     fmt::format("depth '{}', and no depth for {:.4g} s", gap_depth_, gap_s),
+                     fmt::format("metres from -1 to {:g}, and up to {:g} s without one",
+                                 kDeepestLogged_m, kLongestGap_s));
+    for (std::size_t i = gap_; i < end; ++i) {
+      const double share = before && after && to.time_s > from.time_s
+                               ? (samples[i].time_s - from.time_s) / (to.time_s - from.time_s)
+                               : 0.0;
+      const double from_m = before ? from.depth_m : to.depth_m;
+      samples[i].depth_m = from_m + share * (to.depth_m - from_m);
+    }
+    gap_ = kNoGap;
+    return {};
+  }
+
+  Status add_notes() {
+    const double least_m =
+        std::ranges::min_element(log_.samples, {}, &DepthSample::depth_m)->depth_m;
+    if (least_m > kDeepestDive_m)
+      return refusal(name_, fmt::format("no depth above {:.4g} m", least_m),
+                     "a log with depths in metres");
+    if (log_.failed > 0)
+      log_.notes.push_back(fmt::format(
+          "{} refused, first in line {}: found depth '{}'; accepted: metres from -1 to {:g}. {} on "
+          "the line between the depths before and after",
+          log_.failed == 1 ? "a sample was" : fmt::format("{} samples were", log_.failed),
+          failed_line_, failed_depth_, kDeepestLogged_m,
+          log_.failed == 1 ? "Its depth is taken" : "Their depths are taken"));
+    if (longest_s_ > kLongestGap_s)
+      log_.notes.push_back(
+          fmt::format("from line {} to {}, {:.4g} s pass without a sample: the depth is taken to "
+                      "change evenly from one to the next",
+                      longest_from_, longest_to_, longest_s_));
+    if (least_m > kAtSurface_m)
+      log_.notes.push_back(
+          fmt::format("no depth is nearer to the surface than {:.3g} m: a diver's way from the "
+                      "surface is missing, or the depths are not in metres below it",
+                      least_m));
     return {};
   }
 
@@ -145,6 +225,11 @@ class LogReader {
   std::size_t line_ = 0, width_ = 0, time_ = 0, depth_ = 0, gas_ = 0, of_ = 0;
   const char* separators_ = ",;";
   double unit_s_ = 1.0;
+  static constexpr std::size_t kNoGap = ~std::size_t{0};
+  std::size_t gap_ = kNoGap, gap_line_ = 0;  // the first of the samples in a row that failed
+  std::size_t failed_line_ = 0, last_line_ = 0, longest_from_ = 0, longest_to_ = 0;
+  std::string gap_depth_, failed_depth_;
+  double longest_s_ = 0.0;  // between two samples
   DepthLog log_;
 };
 

@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
+#include "diver/deco_live.hpp"
 #include "diver/gas_label.hpp"
 
 namespace neritic::diver {
@@ -20,8 +19,7 @@ TEST(DepthLog, ColumnsStandInAnyOrderBesideOthers) {
   ASSERT_EQ(log->samples.size(), 4u);
   EXPECT_EQ(log->samples[1].time_s, 30.0);
   EXPECT_EQ(log->samples[1].depth_m, 5.5);
-  EXPECT_TRUE(std::isnan(log->samples[2].depth_m));
-  EXPECT_TRUE(std::isnan(log->samples[3].depth_m));
+  for (const std::size_t i : {2u, 3u}) EXPECT_TRUE(log->samples[i].failed) << i;
   ASSERT_EQ(log->gases.size(), 2u);
   EXPECT_EQ(name_of(log->gases[1]), "EAN50");
   const std::size_t gases[] = {0, 0, 1, 0};
@@ -82,7 +80,8 @@ TEST(DepthLog, DepthsCountDownwardsOrAsAskedUpwards) {
   ASSERT_TRUE(turned.ok()) << turned.error().message;
   EXPECT_EQ(turned->samples[0].depth_m, -0.4);
   EXPECT_EQ(turned->samples[1].depth_m, 18.0);
-  EXPECT_TRUE(std::isnan(turned->samples[2].depth_m));
+  EXPECT_TRUE(turned->samples[2].failed);
+  EXPECT_EQ(turned->samples[2].depth_m, 24.0);
   EXPECT_EQ(turned->samples[3].depth_m, 30.0);
   const auto down = read_depth_log("time_s,depth_m\n0,-1\n10,-0.3\n20,18\n", "d.csv");
   ASSERT_TRUE(down.ok()) << down.error().message;
@@ -91,6 +90,71 @@ TEST(DepthLog, DepthsCountDownwardsOrAsAskedUpwards) {
   ASSERT_FALSE(wrong.ok());
   EXPECT_NE(wrong.error().message.find("line 3: found depth '18'"), std::string::npos)
       << wrong.error().message;
+}
+
+// A dive of 30 m whose way down failed was read as 20 minutes at the surface.
+TEST(DepthLog, AFailedSampleLiesBetweenItsNeighboursAndALongGapIsRefused) {
+  const auto log = read_depth_log(
+      "time_s,depth_m\n0,nan\n5,0\n20,10\n30,nan\n60,9999\n70,30\n80,28\n90,\n", "d.csv");
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  const double depths_m[] = {0.0, 0.0, 10.0, 14.0, 26.0, 30.0, 28.0, 28.0};
+  const bool failed[] = {true, false, false, true, true, false, false, true};
+  ASSERT_EQ(log->samples.size(), std::size(depths_m));
+  for (std::size_t i = 0; i < std::size(depths_m); ++i) {
+    EXPECT_NEAR(log->samples[i].depth_m, depths_m[i], 1e-12) << i;
+    EXPECT_EQ(log->samples[i].failed, failed[i]) << i;
+  }
+  EXPECT_EQ(log->failed, 4u);
+  ASSERT_EQ(log->notes.size(), 1u);
+  EXPECT_EQ(log->notes[0].find("4 samples were refused, first in line 2: found depth 'nan'; "), 0u)
+      << log->notes[0];
+  const auto fault = [](const char* rows) {
+    const auto read = read_depth_log(std::string("time_s,depth_m\n") + rows, "d.csv");
+    return read.ok() ? std::string("read") : read.error().message;
+  };
+  const char* accepted = "; accepted: metres from -1 to 2000, and up to 60 s without one";
+  EXPECT_EQ(fault("0,0\n120,nan\n1200,30\n1800,0\n"),
+            std::string("d.csv: line 3: found depth 'nan', and no depth for 1200 s") + accepted);
+  EXPECT_EQ(fault("0,0\n60,30\n90,\n121,30\n"),
+            std::string("d.csv: line 4: found depth '', and no depth for 61 s") + accepted);
+  EXPECT_EQ(fault("0,nan\n61,0\n"),
+            std::string("d.csv: line 2: found depth 'nan', and no depth for 61 s") + accepted);
+  EXPECT_EQ(fault("0,0\n10,20\n20,2001\n71,inf\n"),
+            std::string("d.csv: line 4: found depth '2001', and no depth for 61 s") + accepted);
+  EXPECT_EQ(fault("0,0\n60,30\n90,\n120,30\n"), "read");
+  EXPECT_EQ(fault("0,nan\n1,\n"),
+            "d.csv: found no depth that a dive has in 2 samples; accepted: a log with depths in "
+            "metres");
+}
+
+TEST(DepthLog, DepthsInAnotherUnitAndLongTimesBetweenSamplesAreSaid) {
+  const auto millibar = read_depth_log("time_s,depth_m\n0,1013\n60,1913\n120,1013\n", "d.csv");
+  ASSERT_FALSE(millibar.ok());
+  EXPECT_EQ(millibar.error().message,
+            "d.csv: found no depth above 1013 m; accepted: a log with depths in metres");
+  const auto notes = [](const char* rows) {
+    const auto read = read_depth_log(std::string("time_s,depth_m\n") + rows, "d.csv");
+    EXPECT_TRUE(read.ok()) << rows;
+    return read.ok() ? read->notes : std::vector<std::string>();
+  };
+  const auto bar = notes("0,1.013\n60,4.1\n");
+  ASSERT_EQ(bar.size(), 1u);
+  EXPECT_EQ(bar[0].find("no depth is nearer to the surface than 1.01 m: "), 0u) << bar[0];
+  const auto gap = notes("0,0\n60,10\n6000,30\n6090,0\n");
+  ASSERT_EQ(gap.size(), 1u);
+  EXPECT_EQ(gap[0].find("from line 3 to 4, 5940 s pass without a sample: "), 0u) << gap[0];
+  EXPECT_TRUE(notes("0,0\n60,10\n120,30\n180,0.5\n").empty());
+}
+
+// A computer reads the depths that a log has.
+TEST(DepthLog, AComputerRefusesNoSampleOfALog) {
+  const auto computer = DiveComputer::create({});
+  ASSERT_TRUE(computer.ok());
+  const auto log = read_depth_log("time_s,depth_m\n0,-1\n10,nan\n60,2000\n", "d.csv");
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  DiveComputerState state = computer->start();
+  for (const DepthSample& s : log->samples) state = computer->step(state, {s.depth_m, s.gas}, 10.0);
+  EXPECT_EQ(state.refused, 0u);
 }
 
 }  // namespace

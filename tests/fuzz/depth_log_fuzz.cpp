@@ -27,6 +27,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     state = computer->step(state, {sample.depth_m, sample.gas}, sample.time_s - time_s);
     time_s = sample.time_s;
   }
+  NERITIC_CHECK(state.refused == 0, "{} samples refused of {}", state.refused, log->samples.size());
   NERITIC_CHECK(sim::all_finite(state), "not finite after {} samples", log->samples.size());
   return 0;
 }

@@ -285,6 +285,32 @@ TEST(PlanCommand, ALogWithoutAnyDepthIsRefused) {
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
 
+TEST(PlanCommand, ALogThatHidesItsDiveIsRefusedAndOneBadSampleIsNamed) {
+  const test::ScratchFolder folder;
+  const auto replayed = [&](const std::string& rows, const std::string& with = "") {
+    EXPECT_TRUE(write_text(folder / "d.csv", "time_s,depth_m\n" + rows).ok());
+    return said_by("plan --log " + (folder / "d.csv").string() + with);
+  };
+  const PlanSaid hidden = replayed("0,0\n120,nan\n1200,30\n1800,0\n");
+  EXPECT_EQ(hidden.status, 2);
+  EXPECT_THAT(hidden.error, HasSubstr("d.csv: line 3: found depth 'nan', and no depth for 1200 s"));
+  EXPECT_EQ(hidden.out, "");
+  EXPECT_EQ(replayed("0,1013\n60,2013\n1200,4013\n1800,1013\n").status, 2);
+  const PlanSaid one =
+      replayed("0,0\n40,20\n50,nan\n60,30\n1200,30\n", " --out " + (folder / "out").string());
+  EXPECT_EQ(one.status, 0) << one.error;
+  EXPECT_THAT(one.out, HasSubstr("5 samples, 1 refused"));
+  EXPECT_THAT(one.out,
+              HasSubstr("\nNOTE: a sample was refused, first in line 4: found depth 'nan'"));
+  EXPECT_THAT(one.out, HasSubstr("\nNOTE: from line 5 to 6, 1140 s pass without a sample"));
+  const std::string rows = read_text(folder / "out/log.csv").value();
+  EXPECT_THAT(rows, HasSubstr("\n50,25,air,"));
+  EXPECT_THAT(rows, HasSubstr(",1\n60,30,air,"));
+  // After a short visit below the tissues hold less than the air at the surface presses.
+  const PlanSaid spike = replayed("0,0\n1,60\n2,0\n600,0\n");
+  EXPECT_THAT(spike.out, HasSubstr("ceiling 0.0 m, 0 % of the M-value at the surface"));
+}
+
 TEST(PlanCommand, ALogIsReplayedSampleBySample) {
   const test::ScratchFolder folder;
   std::string log = "time_s,depth_m,gas\n";

@@ -1,9 +1,11 @@
 // `neritic plan`: a dive planned, or a log of depths replayed; as text or JSON, and as a picture.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "diver/gas_label.hpp"
+#include "engine/core/check.hpp"
 #include "engine/core/files.hpp"
 #include "engine/core/refusal.hpp"
 #include "tools/common/outputs.hpp"
@@ -98,30 +100,33 @@ std::string log_text(const PlanFlags& flags, const diver::DepthLog& log,
   const diver::DiveComputerState& end = trace.end;
   const diver::DiveComputerView& view = trace.rows.back().view;
   std::string out = fmt::format("{}: {} samples, {} refused, {:.1f} min, deepest {:.1f} m; {}\n",
-                                flags.log, log.samples.size(), end.refused,
+                                flags.log, log.samples.size(), log.failed,
                                 trace.rows.back().run_min, end.deepest_m, table_words(table));
   out += fmt::format("deepest ceiling {:.1f} m, {:.1f} min above it; {:.1f} min of ascent alarm\n",
                      trace.most_ceiling_m, trace.above_ceiling_min, trace.fast_min);
   out += fmt::format(
       "at the end: {:.1f} m, ceiling {:.1f} m, {:.0f} % of the M-value at the surface, "
       "CNS {:.1f} %, OTU {:.0f}",
-      end.last.depth_m, view.ceiling_m, 100.0 * view.surface_gradient, end.oxygen.cns_percent,
-      end.oxygen.otu);
+      end.last.depth_m, view.ceiling_m, 100.0 * std::max(view.surface_gradient, 0.0),
+      end.oxygen.cns_percent, end.oxygen.otu);
   if (view.stop_m > 0.0)
     out += fmt::format("; next stop {:g} m {:g} min, {}", view.stop_m, view.stop_min,
                        std::isfinite(view.to_surface_min)
                            ? fmt::format("{:.0f} min to the surface", view.to_surface_min)
                            : "and the ceiling never clears");
   if (view.ceiling_violated) out += "; THE CEILING IS VIOLATED";
-  return out + "\n";
+  out += "\n";
+  for (const std::string& note : log.notes) out += "NOTE: " + note + "\n";
+  return out;
 }
 
-std::vector<std::string> log_warnings(const DiveTrace& trace) {
+std::vector<std::string> log_warnings(const diver::DepthLog& log, const DiveTrace& trace) {
   std::vector<std::string> out;
   if (trace.above_ceiling_min > 0.0)
     out.push_back(fmt::format("{:.1f} min above the ceiling", trace.above_ceiling_min));
   if (trace.fast_min > 0.0)
     out.push_back(fmt::format("{:.1f} min of ascent alarm", trace.fast_min));
+  out.insert(out.end(), log.notes.begin(), log.notes.end());
   return out;
 }
 
@@ -136,27 +141,24 @@ Result<std::string> replay_a_log(const PlanFlags& flags) {
   NERITIC_TRY(const diver::DiveComputer computer, diver::DiveComputer::create(std::move(settings)));
   NERITIC_TRY(const diver::DiveComputerState start, log_start(flags, computer));
   const DiveTrace trace = trace_log(computer, start, log);
-  if (trace.end.refused >= log.samples.size())
-    return refusal(flags.log,
-                   fmt::format("no depth that a dive has in {} samples", log.samples.size()),
-                   "a log with depths in metres");
+  NERITIC_CHECK(trace.end.refused == 0, "{} samples refused that the log's reader accepted",
+                trace.end.refused);
   const diver::DiveComputerSettings& s = computer.settings();
   if (!flags.out.empty()) {
     NERITIC_TRY_STATUS(make_folder(flags.out));
     NERITIC_TRY_STATUS(write_text(flags.out / "log.csv", trace_csv(trace, s.gases)));
   }
-  const PlanPicture picture{
-      "Replayed: " + std::filesystem::path(flags.log).filename().string(),
-      {fmt::format("{}, {}; {} samples, {} refused, deepest ceiling {:.1f} m",
-                   gf_text(s.gf_low, s.gf_high), flags.convention, log.samples.size(),
-                   trace.end.refused, trace.most_ceiling_m),
-       conditions(flags, s.conventions.environment)},
-      log_warnings(trace),
-      s.conventions,
-      s.gf_high,
-      s.gases,
-      {},
-      {}};
+  const PlanPicture picture{"Replayed: " + std::filesystem::path(flags.log).filename().string(),
+                            {fmt::format("{}, {}; {} samples, {} refused, deepest ceiling {:.1f} m",
+                                         gf_text(s.gf_low, s.gf_high), flags.convention,
+                                         log.samples.size(), log.failed, trace.most_ceiling_m),
+                             conditions(flags, s.conventions.environment)},
+                            log_warnings(log, trace),
+                            s.conventions,
+                            s.gf_high,
+                            s.gases,
+                            {},
+                            {}};
   bool drawn = true;
   if (!flags.plot.empty() || !flags.out.empty()) {
     NERITIC_TRY(drawn, write_pictures(flags, "log.png", picture, trace));

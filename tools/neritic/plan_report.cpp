@@ -365,7 +365,8 @@ std::string log_json(const std::string& file, const diver::DepthLog& log, const 
   const diver::DiveComputerView& view = trace.rows.back().view;
   const nlohmann::json json{{"file", file},
                             {"samples", log.samples.size()},
-                            {"refused", end.refused},
+                            {"refused", log.failed},
+                            {"notes", log.notes},
                             {"runtime_min", trace.rows.back().run_min},
                             {"deepest_m", end.deepest_m},
                             {"deepest_ceiling_m", trace.most_ceiling_m},

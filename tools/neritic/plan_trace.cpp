@@ -16,9 +16,9 @@ using diver::DiveComputerState;
 constexpr std::size_t kMostViews = 20000;
 
 void add_row(DiveTrace& trace, const DiveComputer& computer, const DiveComputerState& state,
-             double run_min) {
+             double run_min, bool failed = false) {
   trace.rows.push_back({run_min, state.last.depth_m, state.oxygen.cns_percent, state.oxygen.otu,
-                        static_cast<std::size_t>(state.last.gas), computer.view(state)});
+                        static_cast<std::size_t>(state.last.gas), computer.view(state), failed});
   const diver::DiveComputerView& view = trace.rows.back().view;
   trace.most_ceiling_m = std::max(trace.most_ceiling_m, view.ceiling_m);
   if (trace.rows.size() < 2) return;
@@ -79,7 +79,8 @@ DiveTrace trace_log(const DiveComputer& computer, const diver::DiveComputerState
     state = computer.step(state, {sample.depth_m, sample.gas}, sample.time_s - time_s);
     time_s = sample.time_s;
     const double run_min = (time_s - first_s) / 60.0;
-    if (i % every == 0 || i + 1 == log.samples.size()) add_row(trace, computer, state, run_min);
+    if (i % every == 0 || i + 1 == log.samples.size())
+      add_row(trace, computer, state, run_min, sample.failed);
     if (state.last.depth_m >= deepest_m) {
       deepest_m = state.last.depth_m;
       deepest = {"last at the deepest", run_min, deepest_m, state.tissues};
@@ -95,7 +96,8 @@ DiveTrace trace_log(const DiveComputer& computer, const diver::DiveComputerState
 std::string trace_csv(const DiveTrace& trace, const std::vector<diver::PlanGas>& gases) {
   std::string out =
       "time_s,depth_m,gas,ceiling_m,no_stop_min,stop_m,stop_min,to_surface_min,po2_bar,density_g_l,"
-      "narcotic_m,gradient,surface_gradient,ascent_m_min,alarm,ceiling_violated,cns_percent,otu\n";
+      "narcotic_m,gradient,surface_gradient,ascent_m_min,alarm,ceiling_violated,cns_percent,otu,"
+      "depth_refused\n";
   // No limit, or never, is an empty cell, as in a dive's log.
   const auto known = [](double value) {
     return std::isfinite(value) ? fmt::format("{:.6g}", value) : std::string();
@@ -104,12 +106,13 @@ std::string trace_csv(const DiveTrace& trace, const std::vector<diver::PlanGas>&
     const diver::DiveComputerView& v = row.view;
     fmt::format_to(std::back_inserter(out),
                    "{:.9g},{:.6g},{},{:.4g},{},{:g},{:.6g},{},{:.5g},{:.4g},{:.4g},{:.5g},"
-                   "{:.5g},{:.4g},{},{},{:.5g},{:.5g}\n",
+                   "{:.5g},{:.4g},{},{},{:.5g},{:.5g},{}\n",
                    60.0 * row.run_min, row.depth_m, diver::name_of(gases[row.gas].mix), v.ceiling_m,
                    known(v.no_stop_min), v.stop_m, v.stop_min, known(v.to_surface_min), v.po2_bar,
                    v.density_g_l, v.narcotic_m, v.gradient, v.surface_gradient,
                    v.ascent_m_min + 0.0,  // no -0
-                   static_cast<int>(v.alarm), v.ceiling_violated ? 1 : 0, row.cns_percent, row.otu);
+                   static_cast<int>(v.alarm), v.ceiling_violated ? 1 : 0, row.cns_percent, row.otu,
+                   row.failed ? 1 : 0);
   }
   return out;
 }

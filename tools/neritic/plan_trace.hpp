@@ -14,6 +14,7 @@ struct TraceRow {
   double run_min = 0.0, depth_m = 0.0, cns_percent = 0.0, otu = 0.0;
   std::size_t gas = 0;
   diver::DiveComputerView view;
+  bool failed = false;  // the log's sample: the depth is between its neighbours'
 };
 
 // A moment of which the report shows the tissues.
