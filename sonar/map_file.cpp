@@ -99,9 +99,9 @@ Result<MapFile> read_map(const std::filesystem::path& path, MapUse use) {
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
     if (status.type() == std::filesystem::file_type::none)
-      return bad_input("{}: cannot be read: {}", path.string(), error.message());
+      return refusal(path.string(), error.message(), "a file or folder that can be read");
     if (!std::filesystem::exists(status))
-      return bad_input("{}: no such file or folder", path.string());
+      return refusal(path.string(), "no such file or folder", "one that can be read");
     return refusal(path.string(), fmt::format("a file named '{}'", extension),
                    ".npy, .npz, .png, .pgm, .pfm or .exr");
   }

@@ -18,25 +18,27 @@ struct CloseFile {
 };
 using File = std::unique_ptr<std::FILE, CloseFile>;
 
+constexpr const char* kReadable = "a file that can be read";
+
 template <class Buffer>
 Status read_into(const fs::path& path, Buffer& out) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   // Links that lead round in a loop, a folder that may not be entered.
   if (status.type() == fs::file_type::none)
-    return bad_input("{}: cannot be read: {}", path.string(), error.message());
-  if (!fs::exists(status)) return bad_input("{}: no such file", path.string());
-  if (!fs::is_regular_file(status)) return bad_input("{}: not a plain file", path.string());
+    return refusal(path.string(), error.message(), kReadable);
+  if (!fs::exists(status)) return refusal(path.string(), "no such file", kReadable);
+  if (!fs::is_regular_file(status)) return refusal(path.string(), "no plain file", kReadable);
   const auto size = fs::file_size(path, error);
-  if (error) return bad_input("{}: cannot be read: {}", path.string(), error.message());
+  if (error) return refusal(path.string(), error.message(), kReadable);
   if (size > kMaxFileBytes)
     return refusal(path.string(), fmt::format("{} bytes", size),
                    fmt::format("at most {}", kMaxFileBytes));
   File file(std::fopen(path.c_str(), "rb"));
-  if (!file) return bad_input("{}: cannot be opened", path.string());
+  if (!file) return refusal(path.string(), "a file that may not be opened", kReadable);
   out.resize(size);
   if (size > 0 && std::fread(out.data(), 1, size, file.get()) != size)
-    return bad_input("{}: cannot be read to its end", path.string());
+    return refusal(path.string(), "an end before its size", kReadable);
   return {};
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "engine/core/refusal.hpp"
 #include "engine/recording/mcap_reader.hpp"
 
 namespace neritic::recording {
@@ -49,10 +50,11 @@ class MemoryBytes final : public McapSource {
 Result<std::unique_ptr<McapSource>> open_mcap(const std::filesystem::path& path) {
   std::FILE* file = std::fopen(path.c_str(), "rb");
   struct stat facts {};
-  if (file == nullptr) return bad_input("{}: cannot be read", path.string());
+  if (file == nullptr)
+    return refusal(path.string(), "nothing that may be opened", "a file that can be read");
   if (::fstat(::fileno(file), &facts) != 0 || !S_ISREG(facts.st_mode)) {
     std::fclose(file);
-    return bad_input("{}: no plain file", path.string());
+    return refusal(path.string(), "no plain file", "a file that can be read");
   }
   return std::unique_ptr<McapSource>(
       new FileBytes(file, static_cast<std::uint64_t>(facts.st_size), path.string()));

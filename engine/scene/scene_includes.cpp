@@ -143,14 +143,16 @@ class Includer {
     const fs::path path = source_.resolve(written.where, written.text);
     std::error_code error;
     if (!fs::is_regular_file(path, error))
-      return bad_input("{}: include: {}: {}", source_.place(written.where),
-                       printable(path.string(), 300),
-                       fs::exists(path, error) ? "not a plain file" : "no such file");
+      return refusal(fmt::format("{}: include: {}", source_.place(written.where),
+                                 printable(path.string(), 300)),
+                     fs::exists(path, error) ? "no plain file" : "no such file",
+                     "a file that can be read");
     for (const fs::path& open : chain_)
       if (fs::equivalent(open, path, error)) return loop(written, path);
     if (static_cast<int>(chain_.size()) > kMaxIncludeDepth || ++include_count_ > kMaxIncludes)
-      return bad_input("{}: include: more than {} includes deep or {} in all",
-                       source_.place(written.where), kMaxIncludeDepth, kMaxIncludes);
+      return refusal(
+          source_.place(written.where) + ": include", "one more file",
+          fmt::format("includes up to {} deep and {} in all", kMaxIncludeDepth, kMaxIncludes));
     NERITIC_TRY(TomlValue included, read_table(path));
     merge_table(base, std::move(included));
     return {};

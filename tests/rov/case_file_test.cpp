@@ -126,7 +126,7 @@ TEST(RovCaseFile, InputsThatAreNoForcesAreTurnedIntoThem) {
   one["thruster_mode"] = "t200_16V";
   one.erase("input_normalised_V");
   one["input_pwm_us"] = parse_json("[[1500, 1900, 1100, 1898, 1500, 1500, 1500, 1500]]").value();
-  EXPECT_THAT(fault(json), HasSubstr("input_pwm_us: t200_thrust.csv: no such file"));
+  EXPECT_THAT(fault(json), HasSubstr("input_pwm_us: t200_thrust.csv: found no such file"));
   const test::ScratchFolder folder;
   std::filesystem::copy_file(test::source_dir() / "tests/rov/data/t200_measured.csv",
                              folder / "t200_thrust.csv");

@@ -90,7 +90,7 @@ TEST(RovVehicleFile, FaultsNameTheKeyWhatWasFoundAndWhatIsAccepted) {
               HasSubstr("tether.length_m: found -4"));
   EXPECT_THAT(vehicle_fault(good + "[control]\nkp = [1, 1, 1, 1, 1, -1]"), HasSubstr("control.kp"));
   EXPECT_THAT(vehicle_fault(good + "thrust_table = \"none.csv\""),
-              HasSubstr("none.csv: no such file"));
+              HasSubstr("none.csv: found no such file"));
   EXPECT_THAT(vehicle_fault("mass_kg = = 3"), HasSubstr("v.toml:1: not TOML"));
   EXPECT_THAT(vehicle_fault("include = \"bluerov2_heavy_dynamics.toml\"\nmass_kg = -1"),
               HasSubstr("mass_kg: found -1"));

@@ -204,7 +204,7 @@ TEST(GltfAudit, EachBrokenValueIsTheOneNote) {
          b.json["accessors"].back().erase("min");
          b.json["accessors"].back().erase("max");
        }},
-      {"images[0].uri: ./none.png: no such file",
+      {"images[0].uri: ./none.png: found no such file; accepted: a file that can be read",
        [](Builder& b) {
          b.json["images"] = {{{"uri", "none.png"}}};
        }},

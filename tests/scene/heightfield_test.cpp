@@ -193,7 +193,8 @@ TEST(Heightfield, FaultsNameFileAndCure) {
           "inf.npy: row 1, column 1: found height inf m; accepted: -1000000 to 1000000 or no data");
   EXPECT_EQ(message(scratch / "x.tif", {1.0}),
             at + "x.tif: found '.tif'; accepted: a heightfield as .asc, .npy or 16-bit .png");
-  EXPECT_EQ(message(scratch / "no.asc", {1.0}), at + "no.asc: no such file");
+  EXPECT_EQ(message(scratch / "no.asc", {1.0}),
+            at + "no.asc: found no such file; accepted: a file that can be read");
 }
 
 // Extremes and counts of the real grids, taken from the files by another program (awk).

@@ -30,8 +30,10 @@ TEST(SceneInclude, AWrongKeyInAnIncludedFileIsToldWithThatFilesLine) {
 
 TEST(SceneInclude, WhatIsNoFileIsRefused) {
   const test::ScratchFolder scratch;
-  EXPECT_EQ(message_of(scratch, "include = 'no.toml'"), "s.toml:1: include: no.toml: no such file");
-  EXPECT_EQ(message_of(scratch, "include = '.'"), "s.toml:1: include: : not a plain file");
+  EXPECT_EQ(message_of(scratch, "include = 'no.toml'"),
+            "s.toml:1: include: no.toml: found no such file; accepted: a file that can be read");
+  EXPECT_EQ(message_of(scratch, "include = '.'"),
+            "s.toml:1: include: : found no plain file; accepted: a file that can be read");
   EXPECT_EQ(message_of(scratch, "include = 3"),
             "s.toml:1: include: found 3; accepted: the path of a TOML file, or a list of such");
   EXPECT_EQ(message_of(scratch, "include = [3]"),
@@ -45,8 +47,9 @@ TEST(SceneInclude, TooDeepOrTooManyIsRefused) {
         write_text(scratch / fmt::format("d{}.toml", i), fmt::format("include = 'd{}.toml'", i + 1))
             .ok());
   ASSERT_TRUE(write_text(scratch / "d12.toml", "").ok());
-  EXPECT_EQ(message_of(scratch, "include = 'd0.toml'"),
-            "d7.toml:1: include: more than 8 includes deep or 1000 in all");
+  EXPECT_EQ(
+      message_of(scratch, "include = 'd0.toml'"),
+      "d7.toml:1: include: found one more file; accepted: includes up to 8 deep and 1000 in all");
   // Five files a level, five levels deep: 3905 includes.
   for (int i = 0; i < 5; ++i) {
     const std::string next = fmt::format("'f{}.toml'", i + 1);
@@ -162,7 +165,8 @@ TEST(SceneGarbage, AFolderOrNothingIsRefused) {
   EXPECT_EQ(folder.error().code, ErrorCode::kBadInput);
   const auto nothing = load_scene(scratch / "no.toml");
   ASSERT_FALSE(nothing.ok());
-  EXPECT_EQ(nothing.error().message, (scratch / "no.toml").string() + ": no such file");
+  EXPECT_EQ(nothing.error().message, (scratch / "no.toml").string() +
+                                         ": found no such file; accepted: a file that can be read");
 }
 
 }  // namespace

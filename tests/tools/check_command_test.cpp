@@ -89,7 +89,8 @@ TEST(CheckCommand, Status2AndOneLineWhereThereIsNothingToCheck) {
   const std::string bad = (folder / "bad.json").string();
   for (const auto& [arguments, error] :
        {std::pair{"rov " + bad, bad + ": case 'a': scenarios[0].params: not found, but needed\n"},
-        {std::string("rov nowhere.json"), std::string("nowhere.json: no such file\n")},
+        {std::string("rov nowhere.json"),
+         std::string("nowhere.json: found no such file; accepted: a file that can be read\n")},
         {std::string("diver x"),
          std::string("check: found 'diver'; accepted: rov, control or deco\n")},
         {"rov --hz 0 " + bad, std::string("check: --hz: found 0; accepted: 1 to 100000\n")},

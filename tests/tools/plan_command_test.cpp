@@ -436,7 +436,7 @@ TEST(PlanCommand, Status2AndOneLineWhereTheFlagsAreWrong) {
         {"plan --depth 30 --time 20 --altitude 2000 --surface 1.0",
          "--altitude, --surface: found both; accepted: one of them"},
         {"plan --depth 30 --time 20 --vehicle diver", "--vehicle: found without --log"},
-        {"plan --log nowhere.csv", "nowhere.csv: no such file"}}) {
+        {"plan --log nowhere.csv", "nowhere.csv: found no such file"}}) {
     const PlanSaid said = said_by(arguments);
     EXPECT_EQ(said.status, 2) << arguments;
     EXPECT_THAT(said.error, HasSubstr(error)) << arguments;

@@ -375,7 +375,7 @@ TEST_F(SmallImages, WrongFlagsAreRefusedByName) {
   expect_refused(words({"--elevation", "0"}),
                  "--elevation: found 0 degrees; accepted: more than 0");
   expect_refused(with("--intrinsics", "calib.txt"), "fx,fy,cx,cy");
-  expect_refused(with("--intrinsics", "calib.yaml"), "calib.yaml: no such file");
+  expect_refused(with("--intrinsics", "calib.yaml"), "calib.yaml: found no such file");
   expect_refused(words({"--seed", "-1"}), "0 to 18446744073709551615");
   expect_refused(words({"--seed", "99999999999999999999999"}), "0 to 18446744073709551615");
 }
