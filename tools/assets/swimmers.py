@@ -268,7 +268,7 @@ def ray():
 
 def frill(path, width, normal, ripples, phase):
     """A curtain along a path, smooth in the middle and ruffled towards both edges; v across it, -1 to 1, is in uv."""
-    across = np.linspace(-1, 1, 9)
+    across = np.linspace(-1, 1, 7)
     t = np.gradient(path, axis=0)
     t /= np.linalg.norm(t, axis=1, keepdims=True)
     side = np.cross(t, normal)
@@ -281,9 +281,9 @@ def frill(path, width, normal, ripples, phase):
     drift = 0.10 * np.abs(across) * np.cos(2 * np.pi * (0.5 * ripples) * q + phase)
     w = np.asarray(width)[:, None, None] / 2
     rows = path[:, None] + w * (across[None, :, None] * (1 + drift[:, :, None]) * side[:, None] + 2 * lift[:, :, None] * up[:, None])
-    uv = np.stack([np.tile(across, (len(path), 1)), np.tile(q, (1, 9))], 2)
-    i = (np.arange(len(path) - 1)[:, None] * 9 + np.arange(8)).ravel()
-    tri = np.concatenate([np.stack([i, i + 1, i + 10], 1), np.stack([i, i + 10, i + 9], 1)])
+    uv = np.stack([np.tile(across, (len(path), 1)), np.tile(q, (1, 7))], 2)
+    i = (np.arange(len(path) - 1)[:, None] * 7 + np.arange(6)).ravel()
+    tri = np.concatenate([np.stack([i, i + 1, i + 8], 1), np.stack([i, i + 8, i + 7], 1)])
     return Part(rows.reshape(-1, 3), tri, uv.reshape(-1, 2))
 
 
@@ -296,12 +296,12 @@ def soft(part, rgb, alpha):
 
 def jellyfish():
     """A compass jellyfish: bell of 0.24 m, mouth arms 0.8 m. It pulses by its rim. Nose (crown) is +y."""
-    n = 64
+    n = 48
     knots = [(0.004, 0.075), (0.035, 0.072), (0.066, 0.060), (0.092, 0.040), (0.110, 0.012), (0.118, -0.018), (0.116, -0.040), (0.108, -0.042), (0.098, -0.024), (0.086, 0.002), (0.060, 0.030), (0.03, 0.044), (0.004, 0.048)]
-    prof = curve([(r, y, 0.0) for r, y in knots], 31)[:, :2]
+    prof = curve([(r, y, 0.0) for r, y in knots], 25)[:, :2]
     ang = np.arange(n) / n * 2 * np.pi
-    lobes = N.smooth(0.098, 0.116, prof[:, 0]) * N.smooth(0.01, -0.035, prof[:, 1])  # 32 along the rim
-    rings = [np.column_stack([r * np.cos(ang), y - 0.006 * k * (0.5 + 0.5 * np.cos(32 * ang)), r * np.sin(ang)]) for (r, y), k in zip(prof, lobes)]
+    lobes = N.smooth(0.098, 0.116, prof[:, 0]) * N.smooth(0.01, -0.035, prof[:, 1])  # 16 along the rim
+    rings = [np.column_stack([r * np.cos(ang), y - 0.006 * k * (0.5 + 0.5 * np.cos(16 * ang)), r * np.sin(ang)]) for (r, y), k in zip(prof, lobes)]
     bell = shade(loft(np.array(rings), (True, True)), 80)
     a = np.arctan2(bell.pos[:, 2], bell.pos[:, 0])
     r = np.hypot(bell.pos[:, 0], bell.pos[:, 2])
@@ -323,7 +323,7 @@ def jellyfish():
     arms, threads = [], []
     for k in range(4):
         b = k * np.pi / 2 + 0.4
-        q = np.linspace(0, 1, 84)
+        q = np.linspace(0, 1, 72)
         out = 0.020 + 0.10 * q**1.3 * (1 + 0.3 * np.sin(1.9 * k))
         turn = b + 0.25 * np.sin(4.0 * q + k)
         p = np.column_stack([out * np.cos(turn), 0.036 - (0.62 + 0.05 * k) * q, out * np.sin(turn)])
@@ -331,11 +331,11 @@ def jellyfish():
         arms.append(frill(p, width, np.array([np.cos(b + 1.0), 0.1, np.sin(b + 1.0)]), 13 + 2 * k, 1.3 * k))
     for k in range(24):
         b = k / 24 * 2 * np.pi
-        q = np.linspace(0, 1, 16)[:, None]
+        q = np.linspace(0, 1, 12)[:, None]
         ln = 0.42 + 0.30 * rng.random()
         p = np.column_stack([np.cos(b) * (0.112 + 0.035 * q[:, 0] ** 2) + 0.012 * np.sin(9 * q[:, 0] + k), -0.035 - ln * q[:, 0], np.sin(b) * (0.112 + 0.035 * q[:, 0] ** 2) + 0.012 * np.cos(8 * q[:, 0] + k)])
         # Wide and faint instead of thin and full: what is narrower than a pixel would break into dots.
-        threads.append(ribbon(p, np.linspace(0.009, 0.005, 16), np.array([-np.sin(b), 0.0, np.cos(b)]), -1.0, 1.0))
+        threads.append(ribbon(p, np.linspace(0.009, 0.005, 12), np.array([-np.sin(b), 0.0, np.cos(b)]), -1.0, 1.0))
     hang = join([
         soft(join(arms), [0.62, 0.50, 0.40], lambda y: 0.34 * (1 - 0.7 * N.smooth(-0.20, -0.66, y))),
         soft(join(threads), [0.46, 0.30, 0.20], lambda y: 0.40 * (1 - 0.75 * N.smooth(-0.25, -0.75, y))),
