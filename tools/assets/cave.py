@@ -94,6 +94,21 @@ def broken(p, way, d):
     return p
 
 
+def worn(rings):
+    """Rings of points [r, n, 3], round each: flakes and spikes that stand out from their neighbours are worn down."""
+    p = np.array(rings)
+    for _ in range(6):
+        fore, aft = np.roll(p, 1, 1), np.roll(p, -1, 1)
+        up, down = np.concatenate([p[:1], p[:-1]]), np.concatenate([p[1:], p[-1:]])
+        near = np.stack([fore, aft, up, down])
+        off = near.mean(0) - p
+        size = np.linalg.norm(near - p, axis=3).mean(0) + 1e-6
+        share = 0.6 * N.smooth(0.26, 0.60, np.linalg.norm(off, axis=2) / size)
+        share[[0, -1]] = 0
+        p = p + share[:, :, None] * off
+    return p
+
+
 def main():
     n, m = 100, 120
     ang = np.arange(n) / n * 2 * np.pi
@@ -102,7 +117,7 @@ def main():
     steps = 0.18 * 1.055 ** np.arange(32)
     rings = [broken(p, way, d) for p, way in outside(ang, steps)[::-1]]
     rings += [broken(section(s, ang), inwards, d) for s in np.linspace(MOUTH, 1, m)]
-    wall = loft(np.array(rings), (False, True), orient=False)
+    wall = loft(worn(rings), (False, True), orient=False)
     t = shade(wall, 60)
     inside = t.pos[:, 2] < 8
     middle = np.array([line((9.0 - z) / 22.0)[0] for z in t.pos[inside, 2]])
