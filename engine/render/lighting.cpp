@@ -172,6 +172,21 @@ double metered_luminance(const shared::Lighting& light, double water, double ill
   return std::exp(kWaterShare * std::log(water) + (1.0 - kWaterShare) * std::log(ground));
 }
 
+// A camera over the surface meters half sky, half sea: the sky at 15 degrees as sky_over() of
+// shaders/shared/sea_surface.glsl has it, and the sea seen level from above, which mirrors some
+// eighth of that nearby. From the surface up to kAirAt_m this takes the place of the water's own
+// metering.
+constexpr double kAirAt_m = 0.3, kSkyAt15Degrees = 1.25, kSeaMirrors = 0.12;
+
+double luminance_over_sea(const shared::Lighting& light, double water) {
+  const double out = water / (shared::kWaterIndex * shared::kWaterIndex);
+  const double sky = kSkyAt15Degrees * (1.0 - light.direct_share) /
+                     (kPi * shared::kSkyTransmittance) *
+                     glm::dot(kLuminance, Vec3(light.surface_irradiance));
+  // Without a sky (a model's sun alone) the water counts.
+  return std::sqrt(std::max(sky, out) * (kSeaMirrors * sky + (1.0 - kSeaMirrors) * out));
+}
+
 // Beams that reach less than this past their lamp (in daylight, say) are not worth a term.
 constexpr float kLeastGlow_m = 1.0f;
 
@@ -327,8 +342,15 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameSta
     light.terms |= shared::kLightSunSeen;
   const double illuminance = scene_illuminance_lx(light, scene, state.lights);
   double scale = kPi / illuminance;
-  if (const double water = water_luminance(light); water > 0.0)
-    scale = kMiddleGrey / metered_luminance(light, water, illuminance);
+  if (const double water = water_luminance(light); water > 0.0) {
+    double metered = metered_luminance(light, water, illuminance);
+    if (light.terms & shared::kLightSurface) {
+      const double in_air = glm::smoothstep(0.0, kAirAt_m, -double(light.origin_depth_m));
+      metered =
+          std::pow(metered, 1.0 - in_air) * std::pow(luminance_over_sea(light, water), in_air);
+    }
+    scale = kMiddleGrey / metered;
+  }
   if (exposure.fixed_ev) scale = std::exp2(-*exposure.fixed_ev);
   light.exposure = static_cast<float>(scale * std::exp2(exposure.compensation_ev));
   if (glows(light)) light.terms |= shared::kLightGlow;

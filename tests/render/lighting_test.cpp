@@ -47,6 +47,31 @@ TEST(Lighting, AFixedExposureIsThatOfItsStopsAlone) {
   }
 }
 
+// Over the sea the sky is a light tone that is not burnt out, from overhead to the horizon, and a
+// camera that comes up through the surface sees no jump.
+TEST(Lighting, AutoExposureOverTheSeaKeepsTheSky) {
+  for (const char* type : {"I", "II", "5C"})
+    for (const double sun_deg : {15.0, 40.0, 75.0}) {
+      scene::Scene scene;
+      scene.sun = scene::Sun{.elevation_rad = radians(sun_deg)};
+      scene.water = scene::Water{.type = type, .scattering = true, .surface = true};
+      const auto at = [&](double height_m) {
+        const auto light = make_lighting(scene, {}, Vec3(0.0, height_m, 0.0), {}, false);
+        EXPECT_TRUE(light.ok());
+        return *light;
+      };
+      const shared::Lighting over = at(2.0);
+      // What falls onto a level surface from the sky alone, less what it mirrors, over pi: its
+      // mean.
+      const double sky = (1.0 - over.direct_share) / (kPi * 0.934) *
+                         glm::dot(Vec3(0.2126, 0.7152, 0.0722), Vec3(over.surface_irradiance));
+      EXPECT_GT(0.8 / 0.9 * sky * over.exposure, 0.15) << type << " " << sun_deg;
+      EXPECT_LT(1.4 / 0.9 * sky * over.exposure, 0.9) << type << " " << sun_deg;
+      EXPECT_NEAR(at(-1e-3).exposure / at(1e-3).exposure, 1.0, 0.01) << type << " " << sun_deg;
+      EXPECT_EQ(over.exposure, at(20.0).exposure);
+    }
+}
+
 // Auto exposure is never off the light's scale, by lamps in the dark or in a bright shallow.
 TEST(Lighting, AutoExposureShowsGroundByLampsInABlackSeaAsBrightAsWhite) {
   scene::Scene scene;
