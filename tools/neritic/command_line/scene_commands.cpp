@@ -59,7 +59,10 @@ void add_render(CLI::App& app, Run& run) {
       "--water", flags->water,
       fmt::format("another Jerlov type than the scene's: {}", join(scene::kWaterTypes)));
   add_replay(*command, flags->replay, flags->shown, flags->added);
-  command->add_option("--offset", flags->offset_m, "moves the whole world by x y z metres")
+  command
+      ->add_option("--offset", flags->offset_m,
+                   "moves the whole world by x y z metres; what repeats over the sea (waves, "
+                   "caustics, snow) stays")
       ->expected(3);
   command->add_option("--device", flags->device, "Vulkan device: index or part of its name");
   command->add_option(
