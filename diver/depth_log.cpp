@@ -1,8 +1,8 @@
 #include "diver/depth_log.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "diver/gas_label.hpp"
 #include "diver/physio_csv.hpp"
@@ -15,12 +15,8 @@ namespace {
 constexpr std::size_t kMostSamples = 10'000'000;
 constexpr std::size_t kMostVehicles = 8;  // that are named
 constexpr double kMostAbove_m = 1.0;      // the surface: waves, and sensors that drift
-constexpr double kAtSurface_m = 0.5;      // a log that comes as near has been at the surface
-
-bool read_cell(std::string_view cell, double& value) {
-  const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return fault == std::errc() && end == cell.data() + cell.size();
-}
+constexpr double kMostTime = 1e12, kNoTime = std::numeric_limits<double>::quiet_NaN();
+constexpr double kAtSurface_m = 0.5;  // a log that comes as near has been at the surface
 
 // A field's text for one line: other bytes become '?'.
 std::string shown(std::string_view cell) {
@@ -75,6 +71,10 @@ class LogReader {
       if (depth_ = find(name); depth_ < width_) break;
     gas_ = find("gas");
     of_ = find("vehicle");
+    if (trimmed_cell(line).starts_with('<'))
+      return refusal(fmt::format("{}: line {}", name_, line_),
+                     fmt::format("XML, '{}'", shown(trimmed_cell(line))),
+                     "a table (CSV) with the columns time_s and depth_m, as dive logs export it");
     if (time_ == width_ || depth_ == width_)
       return refusal(fmt::format("{}: line {}", name_, line_),
                      fmt::format("columns '{}'", shown(trimmed_cell(line))),
@@ -85,16 +85,17 @@ class LogReader {
   Status read_row(std::string_view line) {
     const std::vector<std::string_view> cells = csv_cells(line, separators_);
     if (cells.size() != width_)
-      return refusal(fmt::format("{}: line {}", name_, line_),
-                     fmt::format("{} cells", cells.size()), fmt::format("{}", width_));
+      return refusal(
+          fmt::format("{}: line {}", name_, line_), fmt::format("{} cells", cells.size()),
+          fmt::format("{}{}", width_, decimal_comma_words(cells.size(), width_, separators_)));
     const std::string_view whose = of_ < width_ ? cells[of_] : std::string_view();
     if (of_ < width_ && vehicles_.size() < kMostVehicles &&
         std::ranges::find(vehicles_, shown(whose)) == vehicles_.end())
       vehicles_.push_back(shown(whose));
     if (!vehicle_.empty() && whose != vehicle_) return {};
     DepthSample sample;
-    if (!read_cell(cells[time_], sample.time_s) || !std::isfinite(sample.time_s) ||
-        std::abs(sample.time_s) > 1e12)
+    sample.time_s = number_of(cells[time_], separators_).value_or(kNoTime);
+    if (!(std::abs(sample.time_s) <= kMostTime))
       return refusal(fmt::format("{}: line {}", name_, line_),
                      fmt::format("time '{}'", shown(cells[time_])), "a number");
     sample.time_s *= unit_s_;
@@ -105,7 +106,9 @@ class LogReader {
                      "times that do not go back");
     if (cells[depth_].empty())
       sample.failed = true;
-    else if (!read_cell(cells[depth_], sample.depth_m))
+    else if (const auto depth_m = number_of(cells[depth_], separators_))
+      sample.depth_m = *depth_m;
+    else
       return refusal(fmt::format("{}: line {}", name_, line_),
                      fmt::format("depth '{}'", shown(cells[depth_])), "a number");
     if (upwards_) sample.depth_m = 0.0 - sample.depth_m;  // not -0

@@ -1,11 +1,11 @@
 // A diver's recorded depths, from a table as computers and simulations write them. Any thread.
 //
-// The form: text, a row a line, columns as physio_csv.hpp parts them. The first row names them, in
-// any order: time_s or time_min (as SampleTable::time_column has it); depth_m, "depth (m)"; gas
-// (air, ean32, 18/45), optional; vehicle, the participant of the row, if there are several. Other
-// columns are ignored, and so are empty lines and lines that begin with #. Times may not go back.
-// Depths count downwards, or upwards if asked; a computer at the surface may show up to a metre the
-// other way, more is refused.
+// The form: text, a row a line, columns and decimal commas as physio_csv.hpp has them. The first
+// row names them, in any order: time_s or time_min (as SampleTable::time_column has it); depth_m,
+// "depth (m)"; gas (air, ean32, 18/45), optional; vehicle, the participant of the row, if there are
+// several. Other columns are ignored, and so are empty lines and lines that begin with #. Times may
+// not go back. Depths count downwards, or upwards if asked; a computer at the surface may show up
+// to a metre the other way, more is refused.
 //
 // A depth that is "nan", empty or beyond kDeepestLogged_m is a sample that failed: its depth lies
 // on the line between its neighbours that did not fail, or is that of the only one. Without a depth

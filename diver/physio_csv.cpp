@@ -25,19 +25,17 @@ constexpr double kDeviationOfMedian = 1.4826;  // of a normal distribution
 constexpr double kMostMissingSamples = 1e6, kMostMissingARow = 100.0;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-double cell_number(std::string_view cell) {
-  double value = 0.0;
-  const auto read = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  const bool whole = read.ec == std::errc() && read.ptr == cell.data() + cell.size();
-  return whole && std::isfinite(value) ? value : kNothing;
+double cell_number(std::string_view cell, const char* separators = ",;") {
+  const double value = number_of(cell, separators).value_or(kNothing);
+  return std::isfinite(value) ? value : kNothing;
 }
 
 // Neither empty, nor how programs write that there is no number.
-bool is_word(std::string_view cell) {
+bool is_word(std::string_view cell, const char* separators) {
   constexpr std::string_view kNone[] = {"",    "nan",  "inf",  "infinity", "na",
                                         "n/a", "null", "none", "-"};
   if (cell.starts_with('-') || cell.starts_with('+')) cell.remove_prefix(1);
-  return std::isnan(cell_number(cell)) &&
+  return std::isnan(cell_number(cell, separators)) &&
          std::ranges::find(kNone, lower_case(cell)) == std::end(kNone);
 }
 
@@ -222,7 +220,30 @@ std::string_view without_mark(std::string_view text) {
 }
 
 const char* separators_of(std::string_view heading) {
-  return heading.find_first_of(",;") == heading.npos ? "\t" : ",;";
+  if (heading.find(',') != heading.npos) return ",;";
+  return heading.find(';') == heading.npos ? "\t" : ";";
+}
+
+std::optional<double> number_of(std::string_view cell, const char* separators) {
+  std::string with_point;
+  if (separators == std::string_view(";")) {
+    if (const auto comma = cell.find(','); comma != cell.npos) {
+      with_point = cell;
+      with_point[comma] = '.';
+      cell = with_point;
+    }
+  }
+  double value = 0.0;
+  const auto read = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (read.ec != std::errc() || read.ptr != cell.data() + cell.size()) return std::nullopt;
+  return value;
+}
+
+std::string_view decimal_comma_words(std::size_t cells, std::size_t width, const char* separators) {
+  const bool commas = std::string_view(separators).find(',') != std::string_view::npos;
+  return commas && cells > width
+             ? " (commas part cells here; decimal commas are read where semicolons alone do)"
+             : "";
 }
 
 std::vector<std::string_view> csv_cells(std::string_view line, const char* separators) {
@@ -276,18 +297,20 @@ Result<SampleTable> parse_sample_table(std::string_view text, const std::string&
       continue;
     }
     if (cells.size() != table.names.size())
-      return refusal(where(), fmt::format("{} columns", cells.size()),
-                     fmt::format("{}", table.names.size()));
+      return refusal(
+          where(), fmt::format("{} columns", cells.size()),
+          fmt::format("{}{}", table.names.size(),
+                      decimal_comma_words(cells.size(), table.names.size(), separators)));
     if (table.columns[0].size() == kMostSamples / table.names.size())
       return refusal(where(), fmt::format("more rows than {}", table.columns[0].size()), "fewer");
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const auto value =
-          is_flag(table.names[i]) ? cell_flag(cells[i]) : std::optional(cell_number(cells[i]));
+      const auto value = is_flag(table.names[i]) ? cell_flag(cells[i])
+                                                 : std::optional(cell_number(cells[i], separators));
       if (!value)
         return refusal(where(), fmt::format("{} '{}'", table.names[i], cells[i].substr(0, 40)),
                        "true, false or a number");
       table.columns[i].push_back(*value);
-      if (std::isnan(*value) && is_word(cells[i])) table.words[i] = true;
+      if (std::isnan(*value) && is_word(cells[i], separators)) table.words[i] = true;
     }
     table.lines.push_back(line_number);
   }

@@ -9,19 +9,24 @@
 namespace neritic::diver {
 
 // Shared by all tables of this folder: cells of a line without blanks and quotes; a file without
-// the mark that spreadsheets begin it with; by comma or semicolon where the heading has one, else
-// tab.
+// the mark that spreadsheets begin it with; by semicolon where the heading has one and no comma, by
+// comma or semicolon where it has a comma, else tab.
 std::string_view trimmed_cell(std::string_view text);
 std::vector<std::string_view> csv_cells(std::string_view line, const char* separators);
 std::string_view without_mark(std::string_view text);
 const char* separators_of(std::string_view heading);
+// A number of these cells, if it is one and no more. Where only semicolons part them, a comma is a
+// decimal point, as spreadsheets of many countries write it: 30,5 is 30.5.
+std::optional<double> number_of(std::string_view cell, const char* separators);
+// An addition to "N cells expected", where commas part cells that decimal commas may have cut.
+std::string_view decimal_comma_words(std::size_t cells, std::size_t width, const char* separators);
 // The column of time among names in small letters (SampleTable::time_column).
 std::optional<std::size_t> time_column_of(const std::vector<std::string>& names, double& scale);
 
-// Columns by name, parted by commas, semicolons or tabs; an empty cell, or one without a number, is
-// NaN. '#' starts a comment; one that says fs_hz=1000 (or rate_hz=) gives the rate. In columns
-// 'status' and 'valid' words count: true, yes, valid, ok are 1, false, no, invalid, lost are 0, and
-// any other is an error.
+// Columns by name, parted by commas, semicolons (then decimal commas count) or tabs; an empty cell,
+// or one without a number, is NaN. '#' starts a comment; one that says fs_hz=1000 (or rate_hz=)
+// gives the rate. In columns 'status' and 'valid' words count: true, yes, valid, ok are 1, false,
+// no, invalid, lost are 0, and any other is an error.
 struct SampleTable {
   std::vector<std::string> names;
   std::vector<std::vector<double>> columns;  // all of one length

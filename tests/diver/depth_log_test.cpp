@@ -46,6 +46,35 @@ TEST(DepthLog, HeadingsOfSpreadsheetsAreRead) {
   }
 }
 
+// Where a comma is the decimal point, spreadsheets part cells by semicolons.
+TEST(DepthLog, DecimalCommasAreReadBetweenSemicolonsAndNamedBetweenCommas) {
+  const auto log =
+      read_depth_log("time_min;depth_m;gas\r\n0;0,25;air\n0,5;30,5;air\n1;30.5;\n", "d.csv");
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  ASSERT_EQ(log->samples.size(), 3u);
+  EXPECT_EQ(log->samples[1].time_s, 30.0);
+  EXPECT_EQ(log->samples[0].depth_m, 0.25);
+  EXPECT_EQ(log->samples[1].depth_m, 30.5);
+  EXPECT_EQ(log->samples[2].depth_m, 30.5);
+  const auto fault = [](const char* text) {
+    const auto read = read_depth_log(text, "d.csv");
+    return read.ok() ? std::string("read") : read.error().message;
+  };
+  EXPECT_EQ(fault("time_s;depth_m\n0;1,2,3\n"),
+            "d.csv: line 2: found depth '1,2,3'; accepted: a number");
+  EXPECT_EQ(fault("time_s,depth_m\n0,1,5\n"),
+            "d.csv: line 2: found 3 cells; accepted: 2 (commas part cells here; decimal commas are "
+            "read where semicolons alone do)");
+}
+
+TEST(DepthLog, XmlIsNamedAndWhatIsReadInItsPlace) {
+  const auto log = read_depth_log("<uddf version=\"3.2.0\"></uddf>\n", "a.uddf");
+  ASSERT_FALSE(log.ok());
+  EXPECT_EQ(log.error().message,
+            "a.uddf: line 1: found XML, '<uddf version=\"3.2.0\"></uddf>'; accepted: a table (CSV) "
+            "with the columns time_s and depth_m, as dive logs export it");
+}
+
 TEST(DepthLog, WhatIsWrongIsSaidWithItsLine) {
   const auto fault = [](const char* text) {
     const auto log = read_depth_log(text, "d.csv");

@@ -314,6 +314,20 @@ TEST(SignalCsv, HeadingsAreTakenAsTheyCome) {
       HasSubstr("found no time in column 'time'"));
 }
 
+TEST(SignalCsv, DecimalCommasCountBetweenSemicolons) {
+  const auto table =
+      parse_sample_table("time_s;ecg_mv;valid\n0,004;-0,25;1\n0.008;1,5e-1;true\n", "e.csv");
+  ASSERT_TRUE(table.ok()) << table.error().message;
+  EXPECT_EQ(table->columns[0], (std::vector<double>{0.004, 0.008}));
+  EXPECT_EQ(table->columns[1], (std::vector<double>{-0.25, 0.15}));
+  const auto cut = parse_sample_table("time_s,ecg_mv\n0,004,0,25\n", "e.csv");
+  ASSERT_FALSE(cut.ok());
+  EXPECT_EQ(
+      cut.error().message,
+      "e.csv:2: found 4 columns; accepted: 2 (commas part cells here; decimal commas are read "
+      "where semicolons alone do)");
+}
+
 TEST(SignalCsv, WhatIsNoneIsAnErrorInWords) {
   const auto message = [](const char* text) {
     return parse_csv(text, "a.csv", {}).error().message;
