@@ -93,7 +93,13 @@ Measurement depth_measurement(const NavigationModel& model, const NavigationStat
   put(out.change[0], kAttitudeError, scale * Vec3(arm.y, -arm.x, 0.0));
   out.change[0][kPressureBias] = 1.0;
   out.change[0][kPressureScale] = depth;
-  out.noise[0][0] = depth_variance(sensor) + (depth_m < kWet_m ? kWet_m * kWet_m : 0.0);
+  // The product of the errors of scale and depth (Bar-Shalom, Li, Kirubarajan 2001, section 10.3):
+  // matters where the scale may be off by several percent.
+  constexpr std::size_t z = kPositionError + 2;
+  const double both = state.covariance(z, kPressureScale);
+  const double product =
+      state.covariance(kPressureScale, kPressureScale) * state.covariance(z, z) + both * both;
+  out.noise[0][0] = depth_variance(sensor) + product + (depth_m < kWet_m ? kWet_m * kWet_m : 0.0);
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include "rov/closed_loop.hpp"
 #include "rov/guidance.hpp"
 #include "rov/navigation.hpp"
+#include "rov/navigation_water.hpp"
 #include "rov/vehicle_file.hpp"
 #include "tests/support/support.hpp"
 
@@ -89,15 +90,16 @@ inline const std::vector<State>& circling(double seconds) {
   return states;
 }
 
-// Readings of a seed, and the navigation by them.
+// Readings of a seed, and the navigation by them. known: the scene's water; else the sensor's.
 class NavigationRun {
  public:
   NavigationRun(const SensorSet& sensors, std::uint64_t seed, const State& start,
-                const SensorWater& in = {})
+                const SensorWater& in = {}, const SensorWater* known = nullptr)
       : water(in),
         sensors_(sensors),
         seed_(seed),
         model_(navigation_model(sensors, in.layers != nullptr)) {
+    if (known) allow_for_water(*known, 11.0, model_);
     read(start, -1.0, 0.0);
     state = start_navigation(model_, readings, surveyed_launch(start.position_ned_m, seed, 0), 0.0);
   }
