@@ -103,7 +103,10 @@ TEST_P(SceneFiles, HundredKilometresAwayLooksAndSoundsTheSame) {
   // Waves and snow belong to their place, so nets of light and flakes differ from place to place.
   for (scene::Scene* scene : {&here, &there}) {
     if (scene->sun) scene->sun->caustics.reset();
-    if (scene->water) scene->water->snow.reset();
+    if (scene->water) {
+      scene->water->snow.reset();
+      scene->water->waves.reset();
+    }
   }
   // Texels of shadow maps lie on a lattice of the world, so the edges of shadows move by parts of
   // one.
