@@ -323,6 +323,7 @@ std::vector<std::string> cannot_hold(const PhysicsWorld& world) {
     add_trim(vehicle, lines);
     add_places(world, vehicle, lines);
     add_doppler_log(world, vehicle, lines);
+    add_pressure(vehicle, lines);
     if (add_current(world, vehicle, lines)) continue;
     const auto legs = vehicle.mission->legs(vehicle.start, start);
     if (!add_no_way(world, vehicle, legs, lines)) add_slow(world, vehicle, legs, lines);

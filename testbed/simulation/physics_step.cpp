@@ -491,9 +491,7 @@ void PhysicsWorld::keep_readings(std::size_t index, std::uint64_t read_before,
 }
 
 rov::SensorWorld PhysicsWorld::sensor_world(std::size_t vehicle) const {
-  rov::SensorWorld world{rays(), seed_, vehicle, vehicles_[vehicle].water};
-  world.water.layers = layers_ ? &*layers_ : nullptr;
-  return world;
+  return {rays(), seed_, vehicle, vehicles_[vehicle].water};
 }
 
 PhysicsSimulation::Step PhysicsWorld::step_function(unsigned threads) const {

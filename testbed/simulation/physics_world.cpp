@@ -9,7 +9,9 @@
 #include "engine/core/refusal.hpp"
 #include "engine/core/text.hpp"
 #include "rov/frames.hpp"
+#include "rov/navigation_water.hpp"
 #include "rov/step_choice.hpp"
+#include "testbed/simulation/place_outlook.hpp"
 #include "testbed/simulation/scene_hash.hpp"
 #include "testbed/simulation/static_scene.hpp"
 
@@ -96,6 +98,11 @@ Result<std::unique_ptr<const PhysicsWorld>> PhysicsWorld::create(const scene::Sc
     world->vehicles_[world->tethers_.all()[i].vehicle].tether = i;
   world->water_kg_m3_ = scene.physics->water_kg_m3;
   if (scene.water && scene.water->column) world->layers_.emplace(*scene.water->column);
+  for (PhysicsVehicle& vehicle : world->vehicles_) {
+    if (world->layers_) vehicle.water.layers = &*world->layers_;
+    if (vehicle.navigation)
+      rov::allow_for_water(vehicle.water, deepest_m(vehicle), vehicle.navigation->model);
+  }
   NERITIC_TRY(world->modems_, Modems::create(scene, world->movers_));
   world->followed_ = followed_points(scene, world->movers_);
   if (!world->humans_.empty()) world->gaze_targets_ = GazeTargets(scene, world->movers_);

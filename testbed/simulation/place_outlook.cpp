@@ -8,6 +8,7 @@
 
 #include "engine/sim/contact_memory.hpp"
 #include "rov/frames.hpp"
+#include "rov/navigation_water.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -18,6 +19,9 @@ constexpr double kDeepest_m = 12e3;
 constexpr int kPlacesALeg = 9;
 constexpr double kPlacesApart_m = 10.0;
 constexpr int kMostPlacesALeg = 200;
+
+// A sensor that errs less is set to its water: the sea's own density differs by 0.3 %.
+constexpr double kPressureOff_m = 0.1, kPressureOffShare = 0.01;
 
 // One who goes to a waypoint, and how it lies there.
 struct Visitor {
@@ -159,6 +163,37 @@ void add_doppler_log(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
       "\"seabed\"), dive nearer to it{}",
       vehicle.name, bed, vehicle.navigation ? ", so that its navigation drifts" : "",
       vehicle.navigation && !vehicle.file.sensors.usbl ? ", or add [usbl] to its file" : ""));
+}
+
+double deepest_m(const PhysicsVehicle& vehicle) {
+  double out_m = vehicle.start.position_ned_m.z;
+  if (vehicle.mission)
+    for (const Vec3& place : vehicle.mission->waypoints_ned_m()) out_m = std::max(out_m, place.z);
+  return std::max(out_m, 0.0);
+}
+
+void add_pressure(const PhysicsVehicle& vehicle, std::vector<std::string>& lines) {
+  const auto& pressure = vehicle.file.sensors.pressure;
+  if (!vehicle.navigation || !pressure) return;
+  const double at_m = deepest_m(vehicle);
+  const double zero_m = rov::told_depth_m(*pressure, vehicle.water, 0.0);
+  const double off_m = rov::told_depth_m(*pressure, vehicle.water, at_m) - at_m;
+  const double least_m = std::max(kPressureOff_m, kPressureOffShare * at_m);
+  std::string causes;
+  if (std::abs(zero_m) > 0.5 * least_m)
+    causes +=
+        fmt::format("pressure.surface_pa = {:.6g}, the scene's air has {:.6g}",
+                    pressure->surface_pa.value_or(vehicle.water.air_pa), vehicle.water.air_pa);
+  if (std::abs(off_m - zero_m) > 0.5 * least_m)
+    // N/m^3 over the sensor's own gravity: the density to set, its mean down to there.
+    causes += fmt::format("{}pressure.water_kg_m3 = {:.6g}, the scene's water is {:.6g}",
+                          causes.empty() ? "" : "; ", pressure->water_kg_m3,
+                          (vehicle.water.pressure_pa(at_m) - vehicle.water.air_pa) /
+                              (pressure->gravity_m_s2 * std::max(at_m, 1e-6)));
+  if (std::abs(off_m) <= least_m && std::abs(zero_m) <= least_m) return;
+  lines.push_back(
+      fmt::format("{}: its depth reads {:.2f} m too {} at {:.3g} m: {}; it navigates by it",
+                  vehicle.name, std::abs(off_m), off_m < 0.0 ? "shallow" : "deep", at_m, causes));
 }
 
 }  // namespace neritic::testbed

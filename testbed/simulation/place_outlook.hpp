@@ -24,4 +24,10 @@ void add_places(const PhysicsWorld& world, const PhysicsHuman& human,
 void add_doppler_log(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
                      std::vector<std::string>& lines);
 
+// The deepest place that is known before: of the start and of a mission's waypoints. Metres.
+double deepest_m(const PhysicsVehicle& vehicle);
+// A pressure sensor whose settings are not the scene's water or air, so that the depths that the
+// vehicle navigates by are off by over 1 % and 0.1 m there.
+void add_pressure(const PhysicsVehicle& vehicle, std::vector<std::string>& lines);
+
 }  // namespace neritic::testbed

@@ -111,5 +111,23 @@ TEST(PlaceOutlook, NamesADiversWaypointsInTheAirTheBedAndAnObstacle) {
   EXPECT_EQ(told("[0, -10, -24.5]", boulder), "");
 }
 
+// The survey vehicle's sensor is set to sea water of 1028 kg/m^3.
+TEST(PlaceOutlook, NamesAPressureSensorThatIsSetToOtherWater) {
+  const auto told = [](const std::string& keys, const char* dynamics) {
+    return places_told("[physics]\n" + keys +
+                       rov_text("position_m = [0, -10, 0]\n[vehicles.mission]\nwaypoints = [{ "
+                                "position_m = [0, -30, -4] }]\n",
+                                "rov", dynamics) +
+                       bed_text(-34));
+  };
+  EXPECT_EQ(told("water_kg_m3 = 1028\n", kSurveyRov).find("its depth reads"), std::string::npos);
+  const std::string lake = told("water_kg_m3 = 999\n", kSurveyRov);
+  EXPECT_NE(lake.find("rov: its depth reads 0.85 m too shallow at 30 m: pressure.water_kg_m3 = "
+                      "1028, the scene's water is 999; it navigates by it\n"),
+            std::string::npos)
+      << lake;
+  EXPECT_EQ(told("water_kg_m3 = 999\n", kPlainRov).find("its depth reads"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace neritic::testbed
