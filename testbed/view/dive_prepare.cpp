@@ -39,7 +39,8 @@ Status DiveView::prepare() {
   const double took_s = 1e-9 * static_cast<double>(now_ns() - begun);
   if (took_s > kWorthALine_s)
     log_warn(
-        "the headset's first picture took {:.0f} s, mostly to compile shaders; the next start finds "
+        "the headset's first picture took {:.0f} s, mostly to compile shaders; the next start "
+        "finds "
         "them",
         took_s);
   return {};

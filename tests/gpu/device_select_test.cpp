@@ -65,7 +65,8 @@ TEST(ChooseDevice, AnUnknownNameListsWhatThereIs) {
   ASSERT_FALSE(chosen.ok());
   EXPECT_EQ(chosen.error().code, ErrorCode::kBadInput);
   for (const DeviceInfo& info : kAll) EXPECT_THAT(chosen.error().message, HasSubstr(info.name));
-  EXPECT_THAT(chosen.error().message, HasSubstr("device: found 'voodoo'; accepted: part of a name"));
+  EXPECT_THAT(chosen.error().message,
+              HasSubstr("device: found 'voodoo'; accepted: part of a name"));
 }
 
 TEST(ChooseDevice, ANamedDeviceThatLacksSomethingSaysWhat) {

@@ -261,9 +261,10 @@ TEST_F(RenderData, APictureCameraThatDoesNotSuitItsSideScanIsRefusedBeforeTheFir
   EXPECT_EQ(said("", {"--sensor", "down"}),
             "sonar side: picture_camera: found down, which looks 90 degrees off straight down; "
             "accepted: at most 15 degrees");
-  EXPECT_EQ(said("pitch_deg = -90\n", {}),
-            "sonar side: picture_camera: found 'down'; accepted: a camera of the scene that --sensor "
-            "names too");
+  EXPECT_EQ(
+      said("pitch_deg = -90\n", {}),
+      "sonar side: picture_camera: found 'down'; accepted: a camera of the scene that --sensor "
+      "names too");
   EXPECT_EQ(said("pitch_deg = -90\nrate_hz = 5\n", {"--sensor", "down", "--own-rates"}),
             "sonar side: picture_camera: found down at 5 Hz; accepted: a camera of 10 Hz or more, "
             "as the sonar has (--own-rates)");

@@ -170,7 +170,8 @@ TEST_F(DivePilotTest, WithoutRoomForTheKeyboardItIsAnError) {
   for (int i = 0; physics_->inbox().open(fmt::format("device_{}", i)).ok();) ++i;
   const auto pilot = DivePilot::create(physics_.get());
   ASSERT_FALSE(pilot.ok());
-  EXPECT_EQ(pilot.error().message.rfind("source: keyboard: found ", 0), 0u) << pilot.error().message;
+  EXPECT_EQ(pilot.error().message.rfind("source: keyboard: found ", 0), 0u)
+      << pilot.error().message;
 }
 
 }  // namespace
