@@ -134,7 +134,7 @@ TEST_F(OverlayProcess, ABadAddressOrNoServerIsOneLine) {
   EXPECT_EQ(said().find("neritic: --connect: found"), 0u) << said();
   EXPECT_EQ(run("hud --connect udp://127.0.0.1:47910"), 2);
   EXPECT_EQ(said(),
-            "neritic: --connect: found udp://127.0.0.1:47910; accepted: tcp://ADDRESS:PORT\n");
+            "neritic: --connect: found 'udp://127.0.0.1:47910'; accepted: tcp://ADDRESS:PORT\n");
 }
 
 }  // namespace

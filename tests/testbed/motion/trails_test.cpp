@@ -11,7 +11,7 @@ namespace {
 scene::Scene leaking_scene() {
   return load_text(
              "[physics]\n[current]\nkind = \"uniform\"\nvelocity_m_s = [0.5, 0, 0]\n"
-             "[water]\nsurface_y_m = 0\n"
+             "[water]\ntype = \"IB\"\n"
              "[[water.bubbles]]\non = \"rov\"\nposition_m = [0, 0.1, 0]\n"
              "[[water.silt]]\non = \"ship\"\nbed_depth_m = 30\n"
              "[[objects]]\nname = \"ship\"\nshape = \"box\"\nposition_m = [0, 0, 50]\n" +
@@ -65,7 +65,7 @@ TEST(Trails, TheWashOfThrustersIsKnownWhereItMeetsTheBed) {
   for (const bool wash : {false, true}) {
     const scene::Scene scene =
         load_text(
-            "[physics]\n[water]\nsurface_y_m = 0\n"
+            "[physics]\n[water]\ntype = \"IB\"\n"
             "[[water.silt]]\non = \"rov\"\nposition_m = [0, -0.2, 0]\nbed_depth_m = 11.5\n" +
             rov_text(std::string("position_m = [0, -10, 0]\n") +
                      "inputs = { wrench = \"python\" }\n" + (wash ? "wash = {}\n" : "")))

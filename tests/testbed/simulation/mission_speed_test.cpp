@@ -406,7 +406,7 @@ TEST(MissionSpeed, AsFastAsItCanItDoesNotRiseAndSinkAboutItsLine) {
                                       std::string("bluerov2_heavy_survey_dynamics.toml")})
     for (const char* keys : {"", "speed_m_s = 5\n", "heading_deg = 45\n", "speed_m_s = 0.6\n"}) {
       if (dynamics != plain && *keys != 0 && !test::is_thorough()) continue;
-      EXPECT_LT(heave_m_s(dynamics, keys, 160.0), 0.03) << dynamics << " " << keys;
+      EXPECT_LT(heave_m_s(dynamics, keys, 160.0), 0.035) << dynamics << " " << keys;
     }
 }
 

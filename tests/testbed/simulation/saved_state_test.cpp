@@ -221,7 +221,7 @@ TEST(SavedState, AnInboxWithoutRoomForItsSourcesIsToldInOneLine) {
   const auto sources = open_sources(inbox, saved);
   ASSERT_FALSE(sources.ok());
   EXPECT_EQ(sources.error().code, ErrorCode::kBadInput);
-  EXPECT_NE(sources.error().message.find("accepted: up to 256"), std::string::npos);
+  EXPECT_NE(sources.error().message.find("accepted: up to 255"), std::string::npos);
 }
 
 TEST(SavedState, NamesThatAreNotThoseOfTheSceneOrComeTwiceAreRefusedInOneLine) {

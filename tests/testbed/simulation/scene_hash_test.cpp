@@ -25,7 +25,7 @@ std::uint64_t hash_of_text(const std::string& text) {
 struct Change {
   std::string key, one, other;
 };
-struct Table {
+struct KeyTable {
   std::string name;
   scene::KeyList keys;
   std::set<std::string> others;  // drawn, heard or told, not physics; or changed in another table
@@ -94,7 +94,7 @@ struct TestFiles {
   std::string operator()(const char* name) const { return "\"" + (folder / name).string() + "\""; }
 };
 
-std::vector<Table> water_tables(const TestFiles& file) {
+std::vector<KeyTable> water_tables(const TestFiles& file) {
   const auto water = [](const std::string& inside) { return top_table("[water]", inside); };
   return {
       {"physics",
@@ -187,7 +187,7 @@ std::vector<Table> water_tables(const TestFiles& file) {
   };
 }
 
-std::vector<Table> vehicle_tables() {
+std::vector<KeyTable> vehicle_tables() {
   const std::string point = "waypoints = [ { position_m = [0, -9, -4] } ]";
   const auto waypoint = [](const std::string& inside) {
     return std::string(kStillWater) + kRock +
@@ -343,7 +343,7 @@ std::vector<Table> vehicle_tables() {
   };
 }
 
-std::vector<Table> diver_tables(const TestFiles& file) {
+std::vector<KeyTable> diver_tables(const TestFiles& file) {
   const std::string layers = "[water]\ntemperature_c = 4\n";
   return {
       {"swim",
@@ -426,7 +426,7 @@ std::vector<Table> diver_tables(const TestFiles& file) {
   };
 }
 
-std::vector<Table> object_tables(const TestFiles& file) {
+std::vector<KeyTable> object_tables(const TestFiles& file) {
   // What is solid.
   const auto solid = [](const std::string& inside) {
     return std::string(kStillWater) + rov_with("") + "[[objects]]\nname = \"it\"\n" + inside + "\n";
@@ -592,8 +592,8 @@ std::vector<Table> object_tables(const TestFiles& file) {
   };
 }
 
-void expect_all(const std::vector<Table>& tables) {
-  for (const Table& table : tables) {
+void expect_all(const std::vector<KeyTable>& tables) {
+  for (const KeyTable& table : tables) {
     std::set<std::string> changed;
     for (const Change& change : table.changes) {
       changed.insert(change.key);
