@@ -7,7 +7,7 @@ namespace neritic::diver {
 namespace {
 
 constexpr double kBodyHeat_j_kg_k = 3470.0, kCoreShare = 0.75;
-// Of the tissue's resistance, between core and shell.
+// The share of the tissue's resistance that lies between core and shell.
 constexpr double kWithin = 0.3;
 constexpr double kNarrow_m2_k_w = 0.12, kWide_m2_k_w = 0.03, kNarrow_c = 36.8, kWide_c = 37.4;
 constexpr double kNarrowSkin_c = 31.0, kWideSkin_c = 34.0;

@@ -52,7 +52,7 @@ double skin_area_m2(double mass_kg, double height_m);
 // Between core and skin; between skin and water. m^2 K/W.
 double tissue_resistance(double core_c, double skin_c);
 double suit_resistance(const ColdSettings& settings, const ColdInputs& inputs);
-// Of a body with that shell, once the suit has the water's temperature outside.
+// The skin of a body with that shell, once the suit has the water's temperature outside.
 double skin_temperature_c(const ColdSettings& settings, const ColdInputs& inputs,
                           const ColdState& state);
 double breath_heat_w(const ColdSettings& settings, const ColdInputs& inputs);

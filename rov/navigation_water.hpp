@@ -1,6 +1,6 @@
-// What navigation allows for where the settings of a pressure sensor are not the water and the air
-// of the scene: its file is written before anybody knows where the vehicle dives. Pure functions;
-// any thread.
+// The doubt that navigation needs where the settings of a pressure sensor are not the water and the
+// air of the scene: its file is written before anybody knows where the vehicle dives. Pure
+// functions; any thread.
 #pragma once
 
 #include "rov/inertial_sensors.hpp"

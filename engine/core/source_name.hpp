@@ -10,7 +10,7 @@
 namespace neritic {
 
 inline constexpr std::size_t kLongestSourceName = 64;
-// Of what the simulation itself sends; the first source of each inbox.
+// The source of what the simulation itself sends: each inbox's first.
 inline constexpr std::string_view kSimulationName = "simulation";
 inline constexpr std::string_view kAcceptedSourceName =
     "1 to 64 printable ASCII characters without spaces, but autopilot, nobody, recording, "

@@ -78,7 +78,7 @@ Vec2 within_circle(const MixedKey& key, std::uint64_t index) {
 
 }  // namespace
 
-// What of a source holds for all its breaths.
+// The facts of a source that hold for all its breaths.
 struct BubbleField::Plan {
   bool leaks;
   double period_s, out_s, first_s, count, radius_m, burst_m_s, gulps, oldest_s;
@@ -106,7 +106,7 @@ struct BubbleField::Plan {
     oldest_s = source.height_m / slowest_m_s + period_s;
     gulps = std::max(1.0, std::round(kGulps_hz * out_s));
   }
-  // Of a gulp's time in which gas leaves.
+  // The share of a gulp's time in which gas leaves.
   double share() const { return leaks ? 1.0 : kGulpShare; }
 };
 

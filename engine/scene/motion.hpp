@@ -43,11 +43,13 @@ class SimulatedMotion {
   // World_from_object; nothing for an object that the simulation does not move.
   virtual std::optional<MotionAt> at(std::size_t object, double time_s) const = 0;
   // The pose of the object's model; nothing where its clip says it.
-  virtual std::optional<ModelPose> model_pose(std::size_t object, const Model& model,
-                                              double time_s) const = 0;
+  virtual std::optional<ModelPose> model_pose(std::size_t, const Model&, double) const {
+    return std::nullopt;
+  }
   // Model_from_node of one node of that pose; nothing where the object's clip says it.
-  virtual std::optional<Mat4> model_from_node(std::size_t object, const Model& model, int node,
-                                              double time_s) const = 0;
+  virtual std::optional<Mat4> model_from_node(std::size_t, const Model&, int, double) const {
+    return std::nullopt;
+  }
   // Where a point of an object, or of a joint of its model, was long ago. Nothing where the
   // simulation does not follow that point, or time_s is not long ago: the poses then say it.
   virtual std::optional<FollowedPlace> followed(std::size_t, int, const Vec3&, double) const {

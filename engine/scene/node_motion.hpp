@@ -32,8 +32,8 @@ struct NodePlace {
   Vec3 scale;
   std::optional<Vec3> place_m = std::nullopt;  // nothing: the model's own
 };
-// Of keys.nodes[i]. Between two keys rotations turn the shortest way, scales and places change
-// linearly.
+// The place of keys.nodes[i]. Between two keys rotations turn the shortest way, scales and places
+// change linearly.
 NodePlace place_at(const NodeKeys& keys, std::size_t i, double time_s);
 
 }  // namespace neritic::scene

@@ -25,7 +25,7 @@ struct DeviceHealth {
   double rate_hz = 0.0;                     // datagrams of late
   std::string trouble;                      // of the connection, or why nothing is used
 };
-// What an operator is told first: no datagram came yet, some came within a second, or none did.
+// The first news for an operator: no datagram came yet, some came within a second, or none did.
 enum class LinkState { kWaiting, kHeard, kSilent };
 LinkState link_state(const DeviceHealth& health, TimeNs now_ns);
 

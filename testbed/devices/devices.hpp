@@ -15,7 +15,7 @@ class Devices {
   std::vector<SampleSource*> sources() const;
   std::vector<DeviceHealth> health() const;
   const std::vector<std::unique_ptr<DeviceSource>>& all() const { return sources_; }
-  // Of microphones and straps, for a recording; the queues live as long as this does.
+  // The queues of microphones and straps, for a recording; they live as long as this does.
   std::vector<SignalSource> signals();
   const DeviceSource* find(std::string_view name) const;
 

@@ -15,41 +15,6 @@ int index_in(const std::vector<int>& table, std::size_t object) {
 
 }  // namespace
 
-// One snapshot alone, at its time.
-class MotionHistory::Instant final : public scene::SimulatedMotion {
- public:
-  Instant(const MotionHistory& of, const MotionSnapshot& snapshot) : of_(of), snapshot_(snapshot) {}
-  std::optional<scene::MotionAt> at(std::size_t object, double) const override {
-    const int place = index_in(of_.place_, object);
-    if (place < 0 || !snapshot_.motions[static_cast<std::size_t>(place)]) return std::nullopt;
-    return scene::MotionAt{*snapshot_.motions[static_cast<std::size_t>(place)]};
-  }
-  std::optional<scene::ModelPose> model_pose(std::size_t object, const scene::Model& model,
-                                             double time_s) const override {
-    const auto keys = keys_of(object);
-    if (!keys) return std::nullopt;
-    return scene::evaluate_pose(model, *keys, time_s);
-  }
-  std::optional<Mat4> model_from_node(std::size_t object, const scene::Model& model, int node,
-                                      double time_s) const override {
-    const auto keys = keys_of(object);
-    if (!keys) return std::nullopt;
-    return scene::evaluate_node(model, node, *keys, time_s);
-  }
-
- private:
-  std::optional<scene::NodeKeys> keys_of(std::size_t object) const {
-    const int joints = index_in(of_.joints_, object);
-    if (joints < 0) return std::nullopt;
-    const scene::NodeKey& key = snapshot_.joints[static_cast<std::size_t>(joints)];
-    if (key.rotations.empty()) return std::nullopt;
-    return scene::NodeKeys{of_.moved_[static_cast<std::size_t>(of_.place_[object])].nodes, &key};
-  }
-
-  const MotionHistory& of_;
-  const MotionSnapshot& snapshot_;
-};
-
 MotionHistory::MotionHistory(std::vector<Moved> moved, std::vector<FollowedPoint> followed)
     : moved_(std::move(moved)), ring_(kKept), trails_(std::move(followed)) {
   int joints = 0;
@@ -72,8 +37,11 @@ void MotionHistory::add(MotionSnapshot snapshot) {
   count_ = std::min(count_ + 1, ring_.size());
 }
 
-void MotionHistory::trace(const MotionSnapshot& snapshot, const Trails::Wash& wash) {
-  trails_.add(Instant(*this, snapshot), snapshot.time_s, wash);
+void MotionHistory::trace(MotionSnapshot snapshot, const Trails::Wash& wash) {
+  const double time_s = snapshot.time_s;
+  MotionHistory alone(moved_);
+  alone.add(std::move(snapshot));
+  trails_.add(alone, time_s, wash);
 }
 
 void MotionHistory::clear() {

@@ -38,7 +38,7 @@ class MotionHistory final : public scene::SimulatedMotion {
   // Whether trace() wants the state of that time; its times rise, too.
   bool trace_due(double time_s) const { return trails_.due(time_s); }
   // Notes where the followed points are, and keeps nothing else.
-  void trace(const MotionSnapshot& snapshot, const Trails::Wash& wash);
+  void trace(MotionSnapshot snapshot, const Trails::Wash& wash);
   void clear();
   bool empty() const { return count_ == 0; }
   double newest_s() const { return at_age(0).time_s; }
@@ -55,13 +55,12 @@ class MotionHistory final : public scene::SimulatedMotion {
   }
 
  private:
-  class Instant;
   // The newest has age 0.
   const MotionSnapshot& at_age(std::size_t age) const {
     return ring_[(added_ - 1 - age) % ring_.size()];
   }
   std::size_t age_before(double time_s) const;
-  // Of the nodes of an object's model; nothing while its clip moves it.
+  // The keys of an object's nodes; nothing while its clip moves it.
   std::optional<scene::NodeKeys> keys_around(std::size_t object, const scene::Model& model,
                                              double time_s) const;
 

@@ -8,7 +8,7 @@
 
 namespace neritic::testbed {
 
-// Of the squared length: 32-bit floats, and senders that round to three digits.
+// How far the squared length may be off 1: 32-bit floats, and senders that round to three digits.
 inline constexpr double kUnitWithin = 2e-3;
 
 inline bool is_unit_rotation(const Quat& q) {

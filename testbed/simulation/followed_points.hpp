@@ -14,7 +14,7 @@ struct FollowedPoint {
   int joint = -1;          // node of its model; -1: the object's origin
   Vec3 position_m{0.0};    // in the object's frame, or the joint's
   double kept_s = 0.0;     // what it left is seen so long
-  // Of the bed that wash over it raises silt from.
+  // The depth of the bed that wash over it raises silt from.
   std::optional<double> bed_depth_m;
   scene::CarriedThing thing;
 };

@@ -7,7 +7,7 @@
 namespace neritic::testbed {
 namespace {
 
-// Of two that the sight passes, the nearer to it counts alone if it is nearer by this.
+// If the sight passes two, the nearer to it counts alone if it is nearer by this.
 constexpr double kTold_rad = radians(1.0);
 // A thing may be solid itself: what is as near as its box hides nothing.
 constexpr double kOwnSurface_m = 0.05;
@@ -93,7 +93,7 @@ GazeTargets::Seen GazeTargets::look(const PhysicsState& state, const sim::Static
     const auto found = passing(target.bounds, back * (eyes_m - pose.position_m), back * gaze);
     if (!found) continue;
     const Candidate candidate{target.object + 1, *found};
-    // What the sight meets first; else what it passes at the smallest angle.
+    // First that which the sight meets soonest; else that which it passes at the smallest angle.
     const auto before = [](const Candidate& a, const Candidate& b) {
       return a.passing.off_rad != b.passing.off_rad ? a.passing.off_rad < b.passing.off_rad
                                                     : a.passing.distance_m < b.passing.distance_m;

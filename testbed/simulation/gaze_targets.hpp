@@ -1,5 +1,5 @@
-// What a diver looks at: the things of a scene about a line of sight. Built once, then only read;
-// any thread. World frame.
+// The things of a scene about a line of sight: whom or what a diver looks at. Built once, then only
+// read; any thread. World frame.
 #pragma once
 
 #include <vector>

@@ -15,7 +15,7 @@ double finite_or_no_end(double minutes) {
   return std::isfinite(minutes) ? minutes : kNoEnd;
 }
 
-// Of a value that an instrument may measure, and else the model of a diver has.
+// The quality of a value that an instrument may measure, and else the model of a diver has.
 ValueQuality quality_of(const GroupState& group, bool measured) {
   if (measured) return ValueQuality::kGood;
   switch (group.phase) {
@@ -70,7 +70,7 @@ HumanReading human_reading(const PhysicsHuman& human, const HumanPhysics& state,
                    .breath_bpm = vitals.breath_bpm,
                    .heart_bpm = vitals.heart_bpm,
                    .depth_m = state.human.life.computer.last.depth_m,
-                   .ascent_m_min = gas_for_ascent(human, state).view.ascent_m_min,
+                   .ascent_m_min = state.human.life.computer.ascent.rate_m_min,
                    .gas_pa = diver::read_gas(human.body, state.human).tank_pa,
                    .gaze_quality = quality(DiverGroup::kGaze, diver::kGazeMeasured),
                    .breath_quality = quality(DiverGroup::kBreath, diver::kBreathMeasured),

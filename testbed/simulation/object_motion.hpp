@@ -26,14 +26,6 @@ class StateMotion final : public scene::SimulatedMotion {
  public:
   StateMotion(const Movers& movers, const PhysicsState& state) : movers_(movers), state_(state) {}
   std::optional<scene::MotionAt> at(std::size_t object, double time_s) const override;
-  std::optional<scene::ModelPose> model_pose(std::size_t, const scene::Model&,
-                                             double) const override {
-    return std::nullopt;
-  }
-  std::optional<Mat4> model_from_node(std::size_t, const scene::Model&, int,
-                                      double) const override {
-    return std::nullopt;
-  }
 
  private:
   const Movers& movers_;

@@ -10,7 +10,7 @@
 namespace neritic::testbed {
 namespace {
 
-// Of a vehicle's file; a USBL may also be a modem's.
+// Whether a vehicle's file may name such a sensor; a USBL may also be a modem's.
 bool is_sensor(PayloadKind kind) {
   switch (kind) {
     case PayloadKind::kImu:

@@ -235,7 +235,7 @@ struct TetherState {
   }
 };
 
-// What a vehicle's sensors had read at the end of a part of the newest step, but its last: with
+// The readings of a vehicle's sensors at the end of a part of the newest step, but its last: with
 // sensors faster than the steps, all of their readings stay here until the next step.
 struct EarlierReadings {
   std::uint64_t kept = 0;  // 1: of the newest step; 0: free

@@ -34,7 +34,7 @@ void add_contact(const ContactReport& report, double dt_s, VehicleState& state) 
   contact.touched_steps += report.motion.touched ? 1 : 0;
 }
 
-// Of all sensors together; 0 without any.
+// The number of readings of all sensors together; 0 without any.
 std::uint64_t readings_made(const rov::SensorReadings* r) {
   return r ? r->imu.count + r->dvl.count + r->pressure.count + r->heading_rad.count +
                  r->altimeter.count + r->usbl.count

@@ -118,7 +118,7 @@ class PhysicsWorld {
   // The object of a label of solid(), and whether it is of class seabed.
   std::string solid_name(std::uint32_t label) const;
   bool is_bed(std::uint32_t label) const;
-  // Of the scene's objects, in their order: a reading's number n is that of place n - 1.
+  // The names of the scene's objects, in order: a reading's number n is that of place n - 1.
   std::vector<std::string> object_names() const;
   std::uint64_t seed() const { return seed_; }
   double step_s() const { return step_s_; }
@@ -148,7 +148,7 @@ class PhysicsWorld {
   // How fast the thrusters of vehicles that name their wash drive the water at a place of the
   // world.
   double wash_m_s(const PhysicsState& state, const Vec3& place_m) const;
-  // What a diver looks at.
+  // The thing that a diver looks at.
   GazeTargets::Seen looks_at(const PhysicsState& state, std::size_t human, double time_s) const;
   // The newest readings of a vehicle's sensors; null where it has none.
   const rov::SensorReadings* readings(const PhysicsState& state, std::size_t vehicle) const;

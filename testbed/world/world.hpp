@@ -111,7 +111,7 @@ struct Instruments {
 // A source of samples (a device of the scene, a program, a client of the server) and what became
 // of its samples.
 struct SourceInfo {
-  // Of a device that the scene opens, as an operator's panel has it.
+  // The link of a device that the scene opens, as an operator's panel has it.
   struct Link {
     std::string device, where;  // "mxtp", "udp://127.0.0.1:9763"
     double rate_hz = 0.0;       // packets of late

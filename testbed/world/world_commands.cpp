@@ -35,7 +35,7 @@ Status check_most(const std::string& where, std::span<const double> values, doub
   return {};
 }
 
-// Of a gripper or a regulator.
+// The choices of a gripper or a regulator.
 Status check_choices(const std::string& where, std::span<const double> values) {
   for (const double value : values)
     if (value != 0.0 && value != 1.0 && value != 2.0)

@@ -1,4 +1,4 @@
-// What a World tells of the sources of its samples.
+// The sources of a World's samples, as it tells of them.
 #include <algorithm>
 
 #include "engine/core/clock.hpp"

@@ -61,8 +61,8 @@ TEST(Lighting, AutoExposureOverTheSeaKeepsTheSky) {
         return *light;
       };
       const shared::Lighting over = at(2.0);
-      // What falls onto a level surface from the sky alone, less what it mirrors, over pi: its
-      // mean.
+      // The light that falls onto a level surface from the sky alone, less what it mirrors, over
+      // pi: its mean.
       const double sky = (1.0 - over.direct_share) / (kPi * 0.934) *
                          glm::dot(Vec3(0.2126, 0.7152, 0.0722), Vec3(over.surface_irradiance));
       EXPECT_GT(0.8 / 0.9 * sky * over.exposure, 0.15) << type << " " << sun_deg;

@@ -413,7 +413,7 @@ TEST(Silt, IsKickedUpOnlyNearTheBedAndSettles) {
   scene.objects[0].mount.pose.position_m.y = -8.0;
   add_silt(motion, source, 0, 1, 50.0, silt);
   EXPECT_TRUE(silt.empty());
-  // What rests on the bed raises none; what moves over it does.
+  // A thing at rest on the bed raises none; one that moves over it does.
   scene.objects[0].mount.pose.position_m.y = -9.7;
   add_silt(motion, source, 0, 1, 50.0, silt);
   EXPECT_TRUE(silt.empty());
@@ -422,14 +422,6 @@ TEST(Silt, IsKickedUpOnlyNearTheBedAndSettles) {
     Vec3 from_m{0.0}, velocity_m_s{0.0};
     double wash_m_s = 0.0;
     std::optional<scene::MotionAt> at(std::size_t, double) const override { return std::nullopt; }
-    std::optional<scene::ModelPose> model_pose(std::size_t, const scene::Model&,
-                                               double) const override {
-      return std::nullopt;
-    }
-    std::optional<Mat4> model_from_node(std::size_t, const scene::Model&, int,
-                                        double) const override {
-      return std::nullopt;
-    }
     std::optional<scene::FollowedPlace> followed(std::size_t, int, const Vec3&,
                                                  double time_s) const override {
       return scene::FollowedPlace{from_m + velocity_m_s * time_s, wash_m_s};

@@ -73,7 +73,7 @@ def _along(m, a, b, c):
     return float((m.place(a) - m.place(b)) @ line / max(float(line @ line), 1e-12))
 
 
-# Of a name that a signal takes: something with a place, a thing that moves, a diver with a human's body.
+# The kinds of names that a signal takes: something with a place, a thing that moves, a diver with a human's body.
 PLACE, THING, BODY = "place", "thing", "body"
 # name: (function of the moment and the names, what each name has to be, what it is)
 SIGNALS = {

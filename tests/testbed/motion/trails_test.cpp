@@ -1,4 +1,4 @@
-// What leaves bubbles and silt behind: it is known where it was for as long as they are seen.
+// Sources of bubbles and silt: it is known where they were for as long as what they left is seen.
 #include <gtest/gtest.h>
 
 #include "testbed/motion/live_physics.hpp"
@@ -98,14 +98,6 @@ TEST(Trails, AreNotKeptLongerThanWhatWasLeftIsSeen) {
    public:
     std::optional<scene::MotionAt> at(std::size_t, double time_s) const override {
       return scene::MotionAt{{{Vec3(time_s, 0.0, 0.0), Quat(1, 0, 0, 0)}}};
-    }
-    std::optional<scene::ModelPose> model_pose(std::size_t, const scene::Model&,
-                                               double) const override {
-      return std::nullopt;
-    }
-    std::optional<Mat4> model_from_node(std::size_t, const scene::Model&, int,
-                                        double) const override {
-      return std::nullopt;
     }
   };
   const scene::Scene scene = leaking_scene();

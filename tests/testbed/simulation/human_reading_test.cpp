@@ -1,4 +1,4 @@
-// What a robot may know of a person: whom the eyes look at, and how far each value can be relied
+// The state of a person for a robot: whom the eyes look at, and how far each value can be relied
 // on.
 #include "diver/reach.hpp"
 #include "rov/frames.hpp"

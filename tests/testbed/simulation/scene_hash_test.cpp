@@ -427,7 +427,7 @@ std::vector<KeyTable> diver_tables(const TestFiles& file) {
 }
 
 std::vector<KeyTable> object_tables(const TestFiles& file) {
-  // What is solid.
+  // Solid things.
   const auto solid = [](const std::string& inside) {
     return std::string(kStillWater) + rov_with("") + "[[objects]]\nname = \"it\"\n" + inside + "\n";
   };

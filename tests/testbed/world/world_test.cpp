@@ -416,7 +416,7 @@ TEST_F(WorldTest, RefusesRotationsThatAreNone) {
   NERITIC_ASSERT_OK(const auto other, World::open(assets("scenes/dive.toml"), {}));
   ASSERT_TRUE(world->tick(24).ok() && other->tick(24).ok());
   EXPECT_EQ(world->hash(), other->hash());
-  // Of a hand that is not tracked the pose means nothing.
+  // The pose of a hand that is not tracked means nothing.
   std::vector<double> hands{0, 0, -5, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0};
   EXPECT_EQ(said(world->inject("diver/hand_poses", hands, "suit")), "");
   hands[15] = 1.0;

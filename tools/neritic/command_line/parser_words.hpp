@@ -1,5 +1,5 @@
-// What the parser of the command line refuses, as a line of the one form (engine/core/refusal.hpp).
-// Any thread.
+// The refusals of the command line's parser, each as a line of the one form
+// (engine/core/refusal.hpp). Any thread.
 #pragma once
 
 #include <CLI/CLI.hpp>
