@@ -130,9 +130,10 @@ TEST(Cold, PeopleInColdWaterCoolAsMeasured) {
     while (state.core_c > 30.0 && minutes < 2000.0) {
       step_cold(bare(water_c), {.heat_w = 122.0, .ventilation_l_min = 9.0}, 60.0, state);
       minutes += 1.0;
-      if (minutes == 15.0 || minutes == 30.0 || minutes == 60.0)
+      if (minutes == 15.0 || minutes == 30.0 || minutes == 60.0) {
         EXPECT_NEAR(state.core_c, 37.0 - a_minute * (minutes - 15.0), 0.3)
             << water_c << " C, " << minutes << " min";
+      }
     }
     const double measured = 15.0 + 7.0 / a_minute;
     EXPECT_GT(minutes, measured / 1.2) << water_c;
