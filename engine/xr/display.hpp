@@ -67,6 +67,9 @@ struct DisplayFrame {
   std::optional<Pose> world_from_head;
   Tracked tracked;
   std::vector<ViewGroup> groups;  // with kDraw at least one
+  // The only view of a window beside a headset (MirroredDisplay): a part of the first group's first
+  // view. Absent: there is none, or it takes no picture in this frame.
+  std::optional<ViewGroup> mirror;
 };
 
 // The pictures of a group's views.
@@ -99,6 +102,7 @@ struct PanelLayer {
   double radius_m = 0.0;
   // Disjoint; the picture is clear outside of them, so that a display may leave that out.
   std::vector<PanelPart> parts{PanelPart{}};
+  bool mirror_only = false;  // of the window beside a headset: its wearer does not see it
 };
 
 using Layer = std::variant<ProjectionLayer, PanelLayer>;
@@ -141,6 +145,8 @@ class Display {
   // The user's actions since the last call, by the table that the display was made with.
   // claims: devices that panels use now; their controls do nothing else.
   virtual ActionValues take_actions(const InputClaims& claims) = 0;
+  // The same of whoever watches the user in a window beside; no values where none is.
+  virtual ActionValues take_mirror_actions(const InputClaims&) { return {}; }
 };
 
 }  // namespace neritic::xr

@@ -175,18 +175,21 @@ std::string Console::recording() const {
 
 PanelFacts Console::facts(graph::FrameGraph& graph, const ConsoleFrame& frame) {
   const scene::Scene& scene = session_.scene();
-  PanelFacts facts{.title = scene.title.empty() ? scene.path : scene.title,
-                   .water = scene.water ? scene.water->type : "",
-                   .view = frame.choice.viewpoint().name,
-                   .pace = pace_words(options_.clock),
-                   .width = frame.group.width,
-                   .height = frame.group.height,
-                   .given_up = given_up(frame.quality, !options_.sonars.empty()),
-                   .time_s = frame.time_s,
-                   .speed_m_s = frame.choice.eye().speed_m_s(),
-                   .participants = rows_,
-                   .troubles = frame.pilot.troubles(),
-                   .recording = recording()};
+  PanelFacts facts{
+      .title = scene.title.empty() ? scene.path : scene.title,
+      .water = scene.water ? scene.water->type : "",
+      .view = frame.worn < 0
+                  ? frame.choice.viewpoint().name
+                  : "of the wearer, " + scene.objects[static_cast<std::size_t>(frame.worn)].name,
+      .pace = pace_words(options_.clock),
+      .width = frame.group.width,
+      .height = frame.group.height,
+      .given_up = given_up(frame.quality, !options_.sonars.empty()),
+      .time_s = frame.time_s,
+      .speed_m_s = frame.choice.eye().speed_m_s(),
+      .participants = rows_,
+      .troubles = frame.pilot.troubles(),
+      .recording = recording()};
   if (options_.devices)
     for (const DeviceHealth& health : options_.devices->health())
       facts.devices.push_back(stream_words(health, now_ns()));
@@ -205,9 +208,9 @@ PanelFacts Console::facts(graph::FrameGraph& graph, const ConsoleFrame& frame) {
 Readout Console::readout(const ConsoleFrame& frame) const {
   const FreeCamera& eye = frame.choice.eye();
   Readout out{"camera", -eye.position_m().y, radians(eye.heading_deg()), 2};
+  const int carrier = frame.worn < 0 ? frame.choice.carrier() : frame.worn;
   for (std::size_t i = 0; i < participants_.size() && i < marks_.size(); ++i)
-    if (frame.choice.carrier() >= 0 &&
-        carrier_of(session_.scene(), participants_[i].mount) == frame.choice.carrier())
+    if (carrier >= 0 && carrier_of(session_.scene(), participants_[i].mount) == carrier)
       return {marks_[i].name, rows_[i].depth_m, marks_[i].course_rad, 1};
   return out;
 }
@@ -219,6 +222,9 @@ void Console::add_on_demand(graph::FrameGraph&, const ConsoleFrame& frame, Panel
   facts.units = options_.units;
   facts.readout = readout(frame);
   facts.eye = {"", frame.choice.eye().position_m(), radians(frame.choice.eye().heading_deg())};
+  if (frame.world_from_head)
+    facts.eye = {"", frame.world_from_head->position_m,
+                 -course_of(frame.world_from_head->rotation)};
   if (frame.inset && inset_) {
     const scene::Camera& camera = session_.scene().cameras[*inset_];
     facts.inset = InsetPanel{camera.name, overlay_.texture(frame.inset),
@@ -275,8 +281,9 @@ void Console::look_at_cursor() {
 }
 
 // The line under the panels when there is nothing to note: the task, or the first keys to know.
-std::string Console::standing_hint() const {
+std::string Console::standing_hint(bool worn) const {
   if (!options_.task.empty()) return options_.task;
+  if (worn) return options_.steers ? "F1  keys   P  steer" : "F1  keys";
   return options_.steers ? "F1  keys   V  view   P  steer" : "F1  keys   V  view";
 }
 
@@ -294,7 +301,7 @@ void Console::draw(graph::FrameGraph& graph, const ConsoleFrame& frame) {
                 {.first_sonar = first_sonar_,
                  .frames = &frame.times,
                  .device = show_times_ ? session_.device().info().name : "",
-                 .hint = noted ? note_ : standing_hint(),
+                 .hint = noted ? note_ : standing_hint(frame.world_from_head.has_value()),
                  .trails = show_map_ ? &trails_ : nullptr,
                  .numbers = graphs ? &numbers_ : nullptr,
                  .taken = frame.taken,

@@ -53,6 +53,9 @@ struct ConsoleFrame {
   std::vector<PanelRect> taken;  // by a diver's instruments, pixels
   // The picture of the camera that inset() names; empty: it is not drawn in this frame.
   graph::ImageHandle inset;
+  // Beside a headset that is worn: the wearer's head.
+  std::optional<Pose> world_from_head;
+  int worn = -1;  // the object of the diver who wears it; -1: none, he looks from a viewpoint
 };
 
 class Console {
@@ -90,7 +93,7 @@ class Console {
   std::string recording() const;
   std::optional<DiverGauge> diver_gauge(int object) const;
   Readout readout(const ConsoleFrame& frame) const;
-  std::string standing_hint() const;
+  std::string standing_hint(bool worn) const;
   void draw(graph::FrameGraph& graph, const ConsoleFrame& frame);
   void add_on_demand(graph::FrameGraph& graph, const ConsoleFrame& frame, PanelFacts& facts);
   void draw_mark(TimeNs now_ns, float scale, std::span<const PanelRect> instruments) const;

@@ -257,27 +257,26 @@ Result<graph::ImageHandle> DiveHud::declare_picture(graph::FrameGraph& graph,
       changed ? declare_upload(graph, instrument.hud.picture(), instrument.image)
               : graph.import_image(instrument.image,
                                    {.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
-  const bool laid = anew && instrument.hud.layout().kind == hud::LayoutKind::kConsole &&
-                    lay_over(graph, instrument, view, image);
-  if (changed || laid) graph.output(image, graph::Access::kSampledFragment);
+  if (anew && instrument.hud.layout().kind == hud::LayoutKind::kConsole)
+    lay_over(graph, instrument, view, image);
+  // Whatever the display does with it, the next frame finds it as it imports it.
+  graph.output(image, graph::Access::kSampledFragment);
   return image;
 }
 
-// The sonar's and the camera's pictures in their places of the console; false: there are none.
-bool DiveHud::lay_over(graph::FrameGraph& graph, const Instrument& instrument, const HudView& view,
+// The sonar's and the camera's pictures in their places of the console.
+void DiveHud::lay_over(graph::FrameGraph& graph, const Instrument& instrument, const HudView& view,
                        graph::ImageHandle& image) const {
   const hud::Shown& shown = instrument.hud.shown();
   const double scale =
       static_cast<double>(instrument.height_px) / instrument.hud.layout().height_px;
   const auto lay = [&](const char* name, const std::optional<hud::Box>& place,
                        const ConsolePicture& picture) {
-    if (!place || !picture.image) return false;
-    image = declare_copy(graph, name, picture, fit(*place, picture, scale), image);
-    return true;
+    if (place && picture.image)
+      image = declare_copy(graph, name, picture, fit(*place, picture, scale), image);
   };
-  const bool sonar = lay("hud sonar", hud::sonar_place(shown), view.sonar);
-  const bool camera = lay("hud camera", hud::camera_place(shown), view.camera);
-  return sonar || camera;
+  lay("hud sonar", hud::sonar_place(shown), view.sonar);
+  lay("hud camera", hud::camera_place(shown), view.camera);
 }
 
 xr::PanelLayer DiveHud::place(const Instrument& instrument, const HudView& view,

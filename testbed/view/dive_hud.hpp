@@ -83,7 +83,7 @@ class DiveHud {
   };
   bool look(const HudView& view, bool anew);
   bool is_due(double seen_s) const;
-  bool lay_over(graph::FrameGraph& graph, const Instrument& instrument, const HudView& view,
+  void lay_over(graph::FrameGraph& graph, const Instrument& instrument, const HudView& view,
                 graph::ImageHandle& image) const;
   Result<graph::ImageHandle> declare_picture(graph::FrameGraph& graph, Instrument& instrument,
                                              std::uint32_t height_px, bool anew,

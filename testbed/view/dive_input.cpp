@@ -152,4 +152,18 @@ DiveInput read_input(const xr::ActionValues& values) {
                        static_cast<int>(values[Action::kPreviousView])};
 }
 
+DiveInput with_commands(DiveInput input, const DiveInput& beside) {
+  for (bool DiveInput::*command :
+       {&DiveInput::toggle_help, &DiveInput::toggle_panels, &DiveInput::screenshot,
+        &DiveInput::cycle_hud, &DiveInput::toggle_times, &DiveInput::next_sonar,
+        &DiveInput::toggle_pilot, &DiveInput::quit, &DiveInput::toggle_pause,
+        &DiveInput::step_frame, &DiveInput::save, &DiveInput::go_back, &DiveInput::record,
+        &DiveInput::toggle_graphs, &DiveInput::toggle_map, &DiveInput::next_inset,
+        &DiveInput::next_lamps, &DiveInput::panel_screenshot, &DiveInput::next_range})
+    input.*command |= beside.*command;
+  input.faster += beside.faster;
+  input.gain_step += beside.gain_step;
+  return input;
+}
+
 }  // namespace neritic::testbed

@@ -33,5 +33,8 @@ struct DiveInput {
 // The table that a display is made with.
 std::vector<xr::ActionDesc> dive_actions();
 DiveInput read_input(const xr::ActionValues& values);
+// A person's input with what another asks for beside: commands about the run, panels, sonars, lamps
+// and who steers. What moves the person or the view is the person's alone.
+DiveInput with_commands(DiveInput input, const DiveInput& beside);
 
 }  // namespace neritic::testbed

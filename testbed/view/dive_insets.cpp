@@ -77,7 +77,8 @@ DiveHudOptions DiveView::choose_console_sensors() {
 // The inset of the panels, which a person asks for.
 void DiveView::add_inset(FrameRequest& request, const scene::MotionSource& motion) {
   inset_view_.reset();
-  const auto inset = console_ && shown() ? console_->inset() : std::nullopt;
+  const bool drawn = shown() && (frame_.mirror || !watched());
+  const auto inset = console_ && drawn ? console_->inset() : std::nullopt;
   if (!inset) return;
   inset_view_ = request.views.size();
   const scene::Camera& camera = session_.scene().cameras[*inset];

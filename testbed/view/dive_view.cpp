@@ -43,7 +43,9 @@ Result<std::unique_ptr<DiveView>> DiveView::create(Session& session, xr::Display
   if (options.may_fly && physics && !physics->world().humans().empty())
     view->wearer_.emplace(*physics);
   if (options.swim && view->wearer_) view->wearer_->swim_by_keys(true);
-  if (!overlay && !options.task.empty()) log_info("{}", options.task);
+  // The panels of a window beside a headset are not the person's.
+  const bool his_panels = overlay && !options.beside_headset;
+  if (!his_panels && !options.task.empty()) log_info("{}", options.task);
   if (physics && options.keep) view->keeper_.emplace(*physics, *options.keep);
   if (overlay) {
     NERITIC_TRY(view->console_,
@@ -56,7 +58,7 @@ Result<std::unique_ptr<DiveView>> DiveView::create(Session& session, xr::Display
                                  .devices = options.devices,
                                  .steers = view->steers(),
                                  .units = options.units,
-                                 .task = options.task}));
+                                 .task = his_panels ? options.task : ""}));
   }
   if (options.hud) {
     view->hud_ = std::make_unique<DiveHud>(session.device(), session.frames(), *physics,
@@ -125,8 +127,12 @@ bool DiveView::swum_by_keys(DiveInput& input) {
 }
 
 bool DiveView::take_input() {
-  DiveInput input =
-      read_input(display_.take_actions(console_ ? console_->claims() : xr::InputClaims{}));
+  const xr::InputClaims claims = console_ ? console_->claims() : xr::InputClaims{};
+  DiveInput input = read_input(display_.take_actions(claims));
+  // The operator at the window beside a worn headset: he works the run and its panels and flies
+  // vehicles, but moves neither the wearer nor what he looks from.
+  const DiveInput beside = read_input(display_.take_mirror_actions(claims));
+  input = with_commands(input, beside);
   if (console_) console_->take(input);
   if (input.cycle_hud && hud_) hud_->cycle();
   if (options_.clock) take_time(input);
@@ -153,11 +159,14 @@ bool DiveView::take_input() {
                   speed, elapsed_s_);
   if (input.toggle_pilot && !steers()) tell(options_.nobody_to_steer);
   const bool flew = pilot_.flying();
-  DiveInput flown = input;
+  DiveInput flown = watched() ? beside : input;
+  flown.toggle_pilot = input.toggle_pilot;
   if (swum) flown.move = Vec3(0.0), flown.turn = 0.0;
   const bool flying = pilot_.take(flown, choice_.carrier(), speed);
-  if (flying && !flew && choice_.carrier() != pilot_.object()) choice_.choose_on(pilot_.object());
-  choice_.take(input, elapsed_s_, flying || swum, swum ? static_cast<int>(wearer_->object()) : -1);
+  if (flying && !flew && !watched() && choice_.carrier() != pilot_.object())
+    choice_.choose_on(pilot_.object());
+  choice_.take(input, elapsed_s_, (flying && !watched()) || swum,
+               swum ? static_cast<int>(wearer_->object()) : -1);
   return input.quit;
 }
 
@@ -165,6 +174,8 @@ void DiveView::take_click() {
   const auto click = console_ ? console_->take_click() : std::nullopt;
   if (!click || !shown()) return;
   const xr::ViewGroup& group = frame_.groups.front();
+  if (frame_.mirror)
+    return picker_.ask(*click, group.views.front().tangents, frame_.mirror->views.front().tangents);
   const scene::Camera& camera = session_.scene().cameras[choice_.viewpoint().camera];
   picker_.ask(*click, tangents_from_fov(camera.vertical_fov_rad,
                                         static_cast<double>(group.width) / group.height));
@@ -339,17 +350,25 @@ Status DiveView::declare(graph::FrameGraph& graph, const SensorFrame& frame, dou
         .group = views.index, .color = views.color, .depth = views.depth, .near_m = views.near_m});
   }
   if (hud_) NERITIC_TRY_STATUS(declare_hud(graph, frame, time_s, layers));
-  if (console_) {
-    auto taken = hud_ ? hud_->taken(frame_.groups.front()) : std::vector<PanelRect>();
-    NERITIC_TRY(const auto panels, console_->declare(graph, {.group = frame_.groups.front(),
-                                                             .choice = choice_,
-                                                             .pilot = pilot_,
-                                                             .times = times_,
-                                                             .elapsed_s = elapsed_s_,
-                                                             .time_s = time_s,
-                                                             .quality = quality(),
-                                                             .taken = std::move(taken),
-                                                             .inset = inset}));
+  // Beside a headset's the panels lie over the window's pictures alone.
+  if (console_ && (!watched() || frame_.mirror)) {
+    const xr::ViewGroup& group = frame_.mirror ? *frame_.mirror : frame_.groups.front();
+    const bool by_diver = watched() && wearer_ && wears_;
+    auto taken = hud_ && !watched() ? hud_->taken(group) : std::vector<PanelRect>();
+    NERITIC_TRY(auto panels,
+                console_->declare(
+                    graph, {.group = group,
+                            .choice = choice_,
+                            .pilot = pilot_,
+                            .times = times_,
+                            .elapsed_s = elapsed_s_,
+                            .time_s = time_s,
+                            .quality = quality(),
+                            .taken = std::move(taken),
+                            .inset = inset,
+                            .world_from_head = watched() ? frame_.world_from_head : std::nullopt,
+                            .worn = by_diver ? static_cast<int>(wearer_->object()) : -1}));
+    if (panels) panels->mirror_only = watched();
     if (panels) layers.push_back(*panels);
   }
   NERITIC_TRY(const xr::ShownPicture shown, display_.declare(graph, world_from_head_, layers));

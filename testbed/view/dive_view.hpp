@@ -52,6 +52,7 @@ struct DiveViewOptions {
   std::string nobody_to_steer;       // the note of the key that takes control, where it takes none
   ViewMemory memory;                 // as the last window looked
   const Devices* devices = nullptr;  // whose health the panels show; outlives the view
+  bool beside_headset = false;       // the overlay is of a window beside it
   bool swim = false;  // the keys swim the first diver from the start; needs one, and a window
   hud::Units units = hud::Units::kMetric;  // of the panels
   std::string task;  // words for the person, in place of the operator's panels; empty: none
@@ -116,6 +117,8 @@ class DiveView final : public FrameView {
                      std::vector<xr::Layer>& layers);
   void keep_run(const DiveInput& input);
   bool steers() const;
+  // A headset is worn, and an operator watches in a window beside it.
+  bool watched() const { return options_.beside_headset && frame_.world_from_head.has_value(); }
   void tell(const std::string& note);
   Quality quality() const { return governor_ ? governor_->quality() : Quality{}; }
   double view_scale() const { return quality().view_scale; }

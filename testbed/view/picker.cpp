@@ -22,9 +22,14 @@ std::string words_of_label(const scene::Scene& scene, std::uint16_t class_id,
   return kind.empty() || kind == name ? name : name + ", " + kind;
 }
 
-void Picker::ask(const Vec2& at, const FrustumTangents& tangents) {
+void Picker::ask(const Vec2& at, const FrustumTangents& tangents, const FrustumTangents& shown) {
   if (pick_ && pick_->declared) return;  // the last one is under way
-  pick_ = Pick{.at = at, .tangents = tangents};
+  const Vec2 across(glm::mix(shown.left, shown.right, at.x),
+                    glm::mix(shown.top, shown.bottom, at.y));
+  pick_ = Pick{.at = at,
+               .in_view = {(across.x - tangents.left) / (tangents.right - tangents.left),
+                           (across.y - tangents.top) / (tangents.bottom - tangents.top)},
+               .tangents = tangents};
 }
 
 Status Picker::declare(graph::FrameGraph& graph, const SensorFrame::Views& views) {
@@ -32,8 +37,8 @@ Status Picker::declare(graph::FrameGraph& graph, const SensorFrame::Views& views
   const auto pixel = [](double part, std::uint32_t size) {
     return static_cast<std::uint32_t>(std::clamp(part * size, 0.0, size - 1.0));
   };
-  pick_->texel =
-      std::size_t{pixel(pick_->at.y, views.height)} * views.width + pixel(pick_->at.x, views.width);
+  pick_->texel = std::size_t{pixel(pick_->in_view.y, views.height)} * views.width +
+                 pixel(pick_->in_view.x, views.width);
   pick_->near_m = views.near_m;
   NERITIC_TRY(pick_->label, readback_.declare(graph, device_, "picked label", views.label,
                                               render::kLabelFormat, views.width, views.height, 1));
@@ -62,7 +67,8 @@ std::optional<Picked> Picker::take(std::uint64_t completed, const scene::Scene& 
                                            static_cast<std::uint16_t>(label >> 16));
   if (words.empty() || !(depth > 0.0)) return Picked{pick.at, "open water"};
   const FrustumTangents& t = pick.tangents;
-  const Vec3 ray(glm::mix(t.left, t.right, pick.at.x), glm::mix(t.top, t.bottom, pick.at.y), -1.0);
+  const Vec3 ray(glm::mix(t.left, t.right, pick.in_view.x),
+                 glm::mix(t.top, t.bottom, pick.in_view.y), -1.0);
   return Picked{pick.at, picked_words(words, pick.near_m / depth * glm::length(ray), units)};
 }
 

@@ -23,7 +23,9 @@ class Picker {
  public:
   explicit Picker(gpu::Device& device) : device_(device) {}
   // In the next frame; tangents: of the view.
-  void ask(const Vec2& at, const FrustumTangents& tangents);
+  void ask(const Vec2& at, const FrustumTangents& tangents) { ask(at, tangents, tangents); }
+  // shown: a part of the view, in which the place is.
+  void ask(const Vec2& at, const FrustumTangents& tangents, const FrustumTangents& shown);
   // views: of the picture's group.
   Status declare(graph::FrameGraph& graph, const SensorFrame::Views& views);
   void submitted(std::uint64_t value);
@@ -32,7 +34,7 @@ class Picker {
 
  private:
   struct Pick {
-    Vec2 at{0.0};
+    Vec2 at{0.0}, in_view{0.0};  // of what is shown, of the view
     FrustumTangents tangents;
     Readback label, depth;
     std::size_t texel = 0;

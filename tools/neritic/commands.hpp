@@ -83,6 +83,7 @@ struct DiveFlags {
   std::optional<std::uint64_t> seed;  // instead of the scene's
   std::optional<std::uint32_t> runs;  // with the seeds from there on
   bool quiet = false;                 // no summary but --json's
+  bool operator_window = false;       // beside a headset
   bool swim = false;                  // in a window: the keys swim the first diver at once
   std::string task;                   // in a window: words for the person; empty: none
   std::string serve;                  // an address; empty: not for other programs

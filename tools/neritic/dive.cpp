@@ -7,6 +7,7 @@
 #include "engine/core/refusal.hpp"
 #include "engine/sim/run_clock.hpp"
 #include "engine/xr/desktop/desktop.hpp"
+#include "engine/xr/desktop/mirrored_display.hpp"
 #include "engine/xr/offscreen.hpp"
 #include "engine/xr/openxr/headset.hpp"
 #include "testbed/devices/devices.hpp"
@@ -89,7 +90,7 @@ Result<Chosen> choose_sensors(const DiveFlags& flags, const scene::Scene& scene)
 // Where the pictures go. In the order of creation: each uses those before it.
 struct Screen {
   std::vector<xr::ActionDesc> actions;
-  std::unique_ptr<xr::Window> window;  // of a dive on a desktop
+  std::unique_ptr<xr::Window> window;  // of a dive on a desktop, or beside a headset
   std::unique_ptr<gpu::Device> device;
   std::unique_ptr<xr::Headset> headset;  // of a dive in one
   std::string no_headset;                // why there is none, where one was looked for
@@ -97,7 +98,8 @@ struct Screen {
   std::unique_ptr<xr::Display> display;
   std::unique_ptr<xr::Overlay> overlay;
 
-  xr::Display& shown_on() const { return headset ? *headset : *display; }
+  xr::Display& shown_on() const { return display ? *display : *headset; }
+  bool beside_headset() const { return headset && window; }
 };
 
 gpu::DeviceOptions device_options(const DiveFlags& flags) {
@@ -106,35 +108,6 @@ gpu::DeviceOptions device_options(const DiveFlags& flags) {
   options.validation = flags.validation;
   options.cache_folder = gpu::default_cache_folder();
   return options;
-}
-
-// The device that a headset's runtime makes, and its session.
-Status start_headset(const DiveFlags& flags, const scene::Scene& scene, Screen& screen) {
-  NERITIC_TRY(screen.headset, xr::Headset::connect({.room = scene.world_from_lab.has_value(),
-                                                    .refresh_hz = flags.refresh_hz,
-                                                    .actions = screen.actions,
-                                                    .validation = flags.validation}));
-  gpu::DeviceOptions options = device_options(flags);
-  screen.headset->require(options);
-  NERITIC_TRY(screen.device, gpu::Device::create(options));
-  return screen.headset->attach(*screen.device);
-}
-
-// The headset where one is asked for, or is there. Without --display openxr one that shows nothing
-// (no runtime, or none of its formats can be drawn) leaves the dive to a window.
-Status find_headset(const DiveFlags& flags, const scene::Scene& scene, Screen& screen) {
-  screen.actions = dive_actions();
-  if (!flags.bindings.empty()) {
-    NERITIC_TRY(screen.actions, bound_actions(screen.actions, flags.bindings));
-  }
-  if (flags.headless || flags.display == "window") return {};
-  const Status started = start_headset(flags, scene, screen);
-  if (started.ok()) return {};
-  if (flags.display == "openxr" || started.error().code == ErrorCode::kBadInput) return started;
-  screen.headset.reset();
-  screen.device.reset();
-  screen.no_headset = started.error().message;
-  return {};
 }
 
 Status make_window(const DiveFlags& flags, const scene::Scene& scene, Screen& screen) {
@@ -160,6 +133,43 @@ Status make_window(const DiveFlags& flags, const scene::Scene& scene, Screen& sc
   return {};
 }
 
+// The device that a headset's runtime makes, and its session; the operator's window before the
+// device, which has to show pictures in it.
+Status start_headset(const DiveFlags& flags, const scene::Scene& scene, Screen& screen) {
+  NERITIC_TRY(screen.headset, xr::Headset::connect({.room = scene.world_from_lab.has_value(),
+                                                    .refresh_hz = flags.refresh_hz,
+                                                    .actions = screen.actions,
+                                                    .validation = flags.validation}));
+  gpu::DeviceOptions options = device_options(flags);
+  screen.headset->require(options);
+  if (flags.operator_window) {
+    if (const Status made = make_window(flags, scene, screen); !made.ok())
+      return refusal("--operator", made.error().message,
+                     "a desktop for a window, or no --operator");
+    screen.window->require(options);
+  }
+  NERITIC_TRY(screen.device, gpu::Device::create(options));
+  return screen.headset->attach(*screen.device);
+}
+
+// The headset where one is asked for, or is there. Without --display openxr one that shows nothing
+// (no runtime, or none of its formats can be drawn) leaves the dive to a window.
+Status find_headset(const DiveFlags& flags, const scene::Scene& scene, Screen& screen) {
+  screen.actions = dive_actions();
+  if (!flags.bindings.empty()) {
+    NERITIC_TRY(screen.actions, bound_actions(screen.actions, flags.bindings));
+  }
+  if (flags.headless || flags.display == "window") return {};
+  const Status started = start_headset(flags, scene, screen);
+  if (started.ok()) return {};
+  if (flags.display == "openxr" || started.error().code == ErrorCode::kBadInput) return started;
+  screen.headset.reset();
+  screen.device.reset();
+  screen.window.reset();
+  screen.no_headset = started.error().message;
+  return {};
+}
+
 // A headset brings its own.
 Status make_device(const DiveFlags& flags, const scene::Scene& scene, Screen& screen) {
   if (screen.headset) return {};
@@ -174,14 +184,18 @@ Status make_device(const DiveFlags& flags, const scene::Scene& scene, Screen& sc
 
 Status make_display(const DiveFlags& flags, const scene::Camera& camera, Screen& screen) {
   gpu::Device& device = *screen.device;
-  if (screen.headset) return {};
   if (screen.window) {
     xr::Window& window = *screen.window;
-    NERITIC_TRY(screen.display,
+    NERITIC_TRY(auto desktop,
                 xr::make_desktop(device, window, {kFramesInFlight, camera.vertical_fov_rad}));
+    if (screen.headset)
+      screen.display = std::make_unique<xr::MirroredDisplay>(*screen.headset, std::move(desktop));
+    else
+      screen.display = std::move(desktop);
     NERITIC_TRY(screen.overlay, xr::Overlay::create(device, &window, window.content_scale()));
     return {};
   }
+  if (screen.headset) return {};
   const xr::OffscreenOptions options{
       {xr::one_view(camera.width, camera.height, camera.vertical_fov_rad)}};
   NERITIC_TRY(screen.display, xr::OffscreenDisplay::create(device, options));
@@ -328,7 +342,8 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::stri
                       : "nobody here is steered: begin with --swim to be a diver in this scene",
            .memory = screen.memory,
            .devices = devices.get(),
-           .swim = flags.swim && screen.window != nullptr,
+           .beside_headset = screen.beside_headset(),
+           .swim = flags.swim && screen.window && !screen.headset,
            .units = flags.units == "imperial" ? hud::Units::kImperial : hud::Units::kMetric,
            .task = flags.task}));
   std::optional<StepFiles> files;

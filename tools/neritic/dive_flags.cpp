@@ -48,6 +48,10 @@ std::string flag_beside_replay(const DiveFlags& flags) {
 
 // Flags that a run without a window or a headset would not look at.
 Status check_flags_of_displays(const DiveFlags& flags) {
+  if (flags.operator_window && (flags.headless || flags.display == "window"))
+    return refusal("--operator",
+                   flags.headless ? "--headless beside it" : "--display window beside it",
+                   "a dive in a headset (a dive in a window has the panels in that)");
   if (!flags.headless) return {};
   if (flags.refresh_hz > 0.0 || !flags.bindings.empty())
     return refusal(flags.refresh_hz > 0.0 ? "--refresh" : "--bindings", "--headless beside it",

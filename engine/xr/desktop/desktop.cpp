@@ -39,7 +39,7 @@ Result<AcquireOutcome> DesktopDisplay::acquire() {
       made_for_width_ = window_.width();
       made_for_height_ = window_.height();
     }
-    NERITIC_TRY(const AcquireOutcome outcome, swapchain_.acquire());
+    NERITIC_TRY(const AcquireOutcome outcome, swapchain_.acquire(waits_));
     if (outcome != AcquireOutcome::kOutOfDate) return outcome;
     stale_ = true;
   }
@@ -48,7 +48,7 @@ Result<AcquireOutcome> DesktopDisplay::acquire() {
 
 Result<DisplayFrame> DesktopDisplay::begin_frame(const Pose&) {
   DisplayFrame frame;
-  switch (window_.poll()) {
+  switch (window_.poll(waits_)) {
     case WindowState::kClosed:
       frame.verdict = FrameVerdict::kQuit;
       return frame;
@@ -67,7 +67,7 @@ Result<DisplayFrame> DesktopDisplay::begin_frame(const Pose&) {
   frame.period_ns = std::llround(1e9 / window_.refresh_hz());
   frame.display_at_ns = now_ns() + *frame.period_ns;
   if (!acquired_) {
-    std::this_thread::sleep_for(kRetry);
+    if (waits_) std::this_thread::sleep_for(kRetry);
     return frame;
   }
   frame.verdict = FrameVerdict::kDraw;
@@ -102,16 +102,16 @@ Status DesktopDisplay::end_frame(bool submitted) {
   return {};
 }
 
-Result<std::unique_ptr<Display>> make_desktop(gpu::Device& device, Window& window,
-                                              const DesktopOptions& options) {
+Result<std::unique_ptr<WindowDisplay>> make_desktop(gpu::Device& device, Window& window,
+                                                    const DesktopOptions& options) {
   if (device.info().kind == "CPU") {
-    auto shared = SharedDisplay::create(device, window, options.vertical_fov_rad);
-    if (shared.ok()) return std::unique_ptr<Display>(std::move(*shared));
+    auto shared = SharedDisplay::create(device, window, options);
+    if (shared.ok()) return std::unique_ptr<WindowDisplay>(std::move(*shared));
     if (shared.error().code != ErrorCode::kUnsupported) return shared.error();
     log_info("the window's pictures are not shared: {}", shared.error().message);
   }
   NERITIC_TRY(auto display, DesktopDisplay::create(device, window, options));
-  return std::unique_ptr<Display>(std::move(display));
+  return std::unique_ptr<WindowDisplay>(std::move(display));
 }
 
 }  // namespace neritic::xr

@@ -7,15 +7,11 @@
 #include "engine/xr/compositor.hpp"
 #include "engine/xr/desktop/swapchain.hpp"
 #include "engine/xr/desktop/window.hpp"
+#include "engine/xr/desktop/window_display.hpp"
 
 namespace neritic::xr {
 
-struct DesktopOptions {
-  std::uint32_t frames_in_flight = 2;
-  double vertical_fov_rad = radians(60.0);  // whatever the window's size
-};
-
-class DesktopDisplay final : public Display {
+class DesktopDisplay final : public WindowDisplay {
  public:
   // window and device must outlive it.
   static Result<std::unique_ptr<DesktopDisplay>> create(gpu::Device& device, Window& window,
@@ -37,7 +33,6 @@ class DesktopDisplay final : public Display {
   Swapchain swapchain_;
   DesktopOptions options_;
   std::unique_ptr<Compositor> compositor_;
-  ViewGroup group_;        // of this frame
   bool acquired_ = false;  // an image waits to be presented
   bool stale_ = true;      // the swapchain no longer fits the surface
   std::uint32_t made_for_width_ = 0, made_for_height_ = 0;  // the window's size back then
@@ -45,7 +40,7 @@ class DesktopDisplay final : public Display {
 
 // The window's display on this device: a SharedDisplay where the device is a processor and can
 // share memory with the server of the window, else a DesktopDisplay.
-Result<std::unique_ptr<Display>> make_desktop(gpu::Device& device, Window& window,
-                                              const DesktopOptions& options);
+Result<std::unique_ptr<WindowDisplay>> make_desktop(gpu::Device& device, Window& window,
+                                                    const DesktopOptions& options);
 
 }  // namespace neritic::xr

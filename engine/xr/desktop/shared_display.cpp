@@ -16,10 +16,10 @@ constexpr VkFormat kSharedFormat = VK_FORMAT_R8G8B8A8_UNORM;  // of all layers
 }  // namespace
 
 Result<std::unique_ptr<SharedDisplay>> SharedDisplay::create(gpu::Device& device, Window& window,
-                                                             double vertical_fov_rad) {
+                                                             const DesktopOptions& options) {
   const auto number = window.x_window();
   if (!number) return failure(ErrorCode::kUnsupported, "the window is no X window");
-  std::unique_ptr<SharedDisplay> display(new SharedDisplay(device, window, vertical_fov_rad));
+  std::unique_ptr<SharedDisplay> display(new SharedDisplay(device, window, options));
   NERITIC_TRY(display->pictures_, SharedPictures::connect(*number));
   NERITIC_TRY(display->compositor_, Compositor::create(device, kSharedFormat));
   VkSemaphoreTypeCreateInfo type{VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO};
@@ -54,18 +54,21 @@ Status SharedDisplay::fit(std::uint32_t width, std::uint32_t height) {
 // No frame sooner than a refresh of the screen after the last: the server does not pace them.
 Result<DisplayFrame> SharedDisplay::begin_frame(const Pose&) {
   DisplayFrame frame;
-  const WindowState state = window_.poll();
+  const WindowState state = window_.poll(waits_);
   frame.display_at_ns = now_ns();
   if (state == WindowState::kClosed) frame.verdict = FrameVerdict::kQuit;
   if (state != WindowState::kVisible) return frame;
-  frame.verdict = FrameVerdict::kDraw;
-  frame.period_ns = std::llround(1e9 / window_.refresh_hz());
-  if (const TimeNs early_ns = begun_ns_ + *frame.period_ns - now_ns(); early_ns > 0)
+  const TimeNs period_ns = std::llround(1e9 / window_.refresh_hz());
+  if (const TimeNs early_ns = begun_ns_ + period_ns - now_ns(); early_ns > 0) {
+    if (!waits_) return frame;
     std::this_thread::sleep_for(std::chrono::nanoseconds(early_ns));
+  }
+  frame.verdict = FrameVerdict::kDraw;
+  frame.period_ns = period_ns;
   begun_ns_ = now_ns();
   frame.display_at_ns = begun_ns_ + *frame.period_ns;
   NERITIC_TRY_STATUS(fit(window_.width(), window_.height()));
-  group_ = one_view(window_.width(), window_.height(), vertical_fov_rad_);
+  group_ = one_view(window_.width(), window_.height(), options_.vertical_fov_rad);
   frame.groups = {group_};
   return frame;
 }

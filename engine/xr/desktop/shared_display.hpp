@@ -12,14 +12,15 @@
 #include "engine/xr/compositor.hpp"
 #include "engine/xr/desktop/shared_pictures.hpp"
 #include "engine/xr/desktop/window.hpp"
+#include "engine/xr/desktop/window_display.hpp"
 
 namespace neritic::xr {
 
-class SharedDisplay final : public Display {
+class SharedDisplay final : public WindowDisplay {
  public:
   // window and device must outlive it. kUnsupported, with the reason, where nothing can be shared.
   static Result<std::unique_ptr<SharedDisplay>> create(gpu::Device& device, Window& window,
-                                                       double vertical_fov_rad);
+                                                       const DesktopOptions& options);
   ~SharedDisplay() override;
   Result<DisplayFrame> begin_frame(const Pose& world_from_stage) override;
   Result<ShownPicture> declare(graph::FrameGraph& graph, const Pose& world_from_head,
@@ -32,8 +33,8 @@ class SharedDisplay final : public Display {
   }
 
  private:
-  SharedDisplay(gpu::Device& device, Window& window, double vertical_fov_rad)
-      : device_(device), window_(window), vertical_fov_rad_(vertical_fov_rad) {}
+  SharedDisplay(gpu::Device& device, Window& window, const DesktopOptions& options)
+      : device_(device), window_(window), options_(options) {}
   Status fit(std::uint32_t width, std::uint32_t height);
   Status await_device() const;
   // An image of this frame that the host composes.
@@ -50,7 +51,7 @@ class SharedDisplay final : public Display {
 
   gpu::Device& device_;
   Window& window_;
-  double vertical_fov_rad_;
+  DesktopOptions options_;
   std::unique_ptr<SharedPictures> pictures_;
   std::unique_ptr<Compositor> compositor_;
   VkSemaphore drawn_ = VK_NULL_HANDLE;  // a timeline
@@ -58,7 +59,6 @@ class SharedDisplay final : public Display {
   gpu::Image image_;
   std::vector<Part> parts_;  // the view's picture, then the panels
   std::size_t used_ = 0;     // of them, in this frame
-  ViewGroup group_;          // of this frame
   TimeNs begun_ns_ = 0;      // the last frame
 };
 

@@ -144,11 +144,12 @@ Status Swapchain::create_images() {
   return {};
 }
 
-Result<AcquireOutcome> Swapchain::acquire() {
+Result<AcquireOutcome> Swapchain::acquire(bool may_wait) {
   NERITIC_CHECK(exists(), "acquire without a swapchain");
   const std::size_t next = (ready_at_ + 1) % ready_.size();
-  const VkResult result = vkAcquireNextImageKHR(device_->handle(), swapchain_, kAcquireTimeoutNs,
-                                                ready_[next], VK_NULL_HANDLE, &current_);
+  const VkResult result =
+      vkAcquireNextImageKHR(device_->handle(), swapchain_, may_wait ? kAcquireTimeoutNs : 0,
+                            ready_[next], VK_NULL_HANDLE, &current_);
   switch (result) {
     case VK_SUCCESS:
     case VK_SUBOPTIMAL_KHR:  // still drawable; present says it again

@@ -34,7 +34,8 @@ class Swapchain {
   // Makes the images anew at the surface's size (wanted: where the surface leaves it to us). False:
   // the surface has no size now (minimised). Waits for the GPU: sizes change seldom.
   Result<bool> recreate(std::uint32_t wanted_width, std::uint32_t wanted_height);
-  Result<AcquireOutcome> acquire();
+  // may_wait: up to half a second for an image; else kNotYet at once.
+  Result<AcquireOutcome> acquire(bool may_wait = true);
   Result<PresentOutcome> present();
 
   // These belong to the acquired image.

@@ -154,8 +154,8 @@ Result<VkSurfaceKHR> Window::create_surface(VkInstance instance) const {
   return surface;
 }
 
-WindowState Window::poll() {
-  const bool hidden = window_ && width_ == 0;
+WindowState Window::poll(bool may_wait) {
+  const bool hidden = may_wait && window_ && width_ == 0;
   if (hidden)
     glfwWaitEventsTimeout(kHiddenWait_s);
   else

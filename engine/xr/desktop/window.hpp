@@ -44,9 +44,9 @@ class Window {
   void require(gpu::DeviceOptions& options) const;
   Result<VkSurfaceKHR> create_surface(VkInstance instance) const;
 
-  // Handles pending events. While the window is hidden, waits up to 0.01 s for one: the
+  // Handles pending events. While the window is hidden, waits up to 0.01 s for one, if it may: the
   // program's other work goes on.
-  WindowState poll();
+  WindowState poll(bool may_wait = true);
   // See Display::take_actions.
   ActionValues take_actions(const InputClaims& claims);
 

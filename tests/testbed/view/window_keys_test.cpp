@@ -274,6 +274,18 @@ TEST_F(ShownInWindow, AServerThatSharesNoMemoryShowsTheSamePicture) {
             2.0 * 640 * 480 * 4);
 }
 
+// Instruments that do not change keep their images from frame to frame, whoever reads them.
+TEST_F(WindowKeys, InstrumentsOverTheViewKeepVulkansRules) {
+  const std::string scene = (test::source_dir() / "assets/scenes/ascent.toml").string();
+  for (const char* const server : {"", "-extension MIT-SHM"}) {
+    const test::WindowRun run = test::drive_window(
+        scratch_.path(), "'" + scene + "' --size 320x200 --frames 12 --validate --hud corner",
+        {"wait 0.1"}, server);
+    if (test::may_skip_without_device()) GTEST_SKIP() << run.err;
+    EXPECT_EQ(run.status, 0) << run.err;
+  }
+}
+
 // At full quality it took four times as long as the view that the governor had made coarse.
 TEST_F(WindowKeys, TheInsetGivesWayWithTheViewWhereFramesAreLate) {
   const std::string scene = (test::source_dir() / "assets/scenes/dive.toml").string();

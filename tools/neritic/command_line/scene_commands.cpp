@@ -125,6 +125,10 @@ void add_dive(CLI::App& app, CommandLine& line) {
       ->check(CLI::IsMember({"auto", "openxr", "window"}));
   command->add_option("--bindings", flags->bindings,
                       "your own controls of some actions, a .toml (docs/headsets.md)");
+  command->add_flag(
+      "--operator", flags->operator_window,
+      "beside a headset: a window with the wearer's view and the operator's panels and "
+      "keys");
   command->add_option("--refresh", flags->refresh_hz, "pictures a second of the headset")
       ->check(between(1.0, 1000.0));
   command->add_option("--log", flags->files.log, "the log of vehicles and divers as a .csv");
