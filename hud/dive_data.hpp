@@ -11,6 +11,7 @@
 #include "diver/deco_tissues.hpp"
 #include "diver/gas_switch.hpp"
 #include "engine/core/math.hpp"
+#include "hud/fixed_text.hpp"
 
 namespace neritic::hud {
 
@@ -63,6 +64,11 @@ struct DiveData {
   double heading_rad = kUnknown;  // from north towards east
   double heart_bpm = kUnknown, breath_bpm = kUnknown;
   double lungs_m3 = kUnknown;
+
+  // The newest words that came by the diver's modem, who sent them, and seconds since they came.
+  LongText message;
+  FixedText message_from;
+  double message_age_s = kUnknown;  // none came
 
   // The condition as the scene models it (diver/condition.hpp), each part where the scene names it.
   // For an operator: the diver does not notice it. oxygen_dose: share of what this diver bears;

@@ -22,6 +22,14 @@ Tone depth_tone(const Shown& shown) {
   return tone_of(shown, Alarm::kCeiling);
 }
 
+// What must not be missed comes before what somebody says.
+void draw_band(Painter& p, const Box& box, const Shown& shown, double size) {
+  if (any_alarm(shown))
+    p.alarm_band(box, shown, size);
+  else
+    p.message_band(box, shown, size);
+}
+
 }  // namespace
 
 void draw_limit(Painter& p, const Box& box, const Shown& shown, double size, double label_size) {
@@ -110,8 +118,8 @@ void draw_wrist(Painter& p, const Shown& s) {
   p.line(20.0, 315.0, 460.0, 315.0, 1.5, kFaint);
   draw_jacket_row(p, {18.0, 318.0, 442.0, 56.0}, s, 20.0, 12.0);
   p.line(20.0, 379.0, 460.0, 379.0, 1.5, kFaint);
-  if (any_alarm(s)) {
-    p.alarm_band({18.0, 384.0, 444.0, 60.0}, s, 20.0);
+  if (any_band(s)) {
+    draw_band(p, {18.0, 384.0, 444.0, 60.0}, s, 20.0);
     return;
   }
   p.tissues({28.0, 392.0, 150.0, 46.0}, s);
@@ -121,7 +129,7 @@ void draw_wrist(Painter& p, const Shown& s) {
 
 void draw_corner(Painter& p, const Shown& s) {
   const UnitNames unit = unit_names(s.units);
-  p.plate({0.0, 0.0, 400.0, any_alarm(s) ? 358.0 : 304.0}, 18.0, kPlate);
+  p.plate({0.0, 0.0, 400.0, any_band(s) ? 358.0 : 304.0}, 18.0, kPlate);
   p.cell({{10.0, 8.0, 188.0, 108.0},
           with_unit("DEPTH", unit.depth).view(),
           s.depth.view(),
@@ -163,7 +171,7 @@ void draw_corner(Painter& p, const Shown& s) {
   p.cell({{328.0, 190.0, 66.0, 50.0}, "CNS", s.cns.view(), "%", 17.0, 12.0});
   p.line(14.0, 244.0, 386.0, 244.0, 1.5, kFaint);
   draw_jacket_row(p, {10.0, 247.0, 380.0, 50.0}, s, 17.0, 10.0);
-  if (any_alarm(s)) p.alarm_band({8.0, 301.0, 384.0, 50.0}, s, 16.0);
+  draw_band(p, {8.0, 301.0, 384.0, 50.0}, s, 16.0);
 }
 
 namespace {
@@ -223,7 +231,7 @@ void draw_mask(Painter& p, const Shown& s) {
           12.0,
           tone_of(s, Alarm::kOxygen)});
   p.cell({{880.0, top, 76.0, h}, "HDG", s.heading.view(), "\u00b0", 22.0, 12.0});
-  if (any_alarm(s)) p.alarm_band({250.0, 0.0, 460.0, 48.0}, s, 17.0);
+  draw_band(p, {250.0, 0.0, 460.0, 48.0}, s, 17.0);
 }
 
 void draw(LayoutKind layout, Painter& painter, const Shown& shown) {

@@ -11,7 +11,8 @@ using draw2d::Face;
 
 constexpr double kTitle = 12.0, kLeft = 16.0, kWide = 300.0, kStreamRow = 26.0;
 constexpr Box kDiver{kLeft, 16.0, kWide, 688.0}, kCompass{490.0, 16.0, 300.0, 56.0};
-constexpr Box kAlarmBand{400.0, 80.0, 480.0, 60.0}, kCondition{332.0, 462.0, 616.0, 90.0};
+constexpr Box kAlarmBand{400.0, 80.0, 480.0, 60.0}, kMessageBand{400.0, 148.0, 480.0, 60.0},
+    kCondition{332.0, 462.0, 616.0, 90.0};
 constexpr Box kHeart{332.0, 560.0, 304.0, 144.0}, kBreath{644.0, 560.0, 304.0, 144.0};
 // The camera alone has the sonar's place.
 constexpr Box kSonar{964.0, 404.0, kWide, 300.0}, kCamera{964.0, 216.0, kWide, 180.0};
@@ -237,6 +238,7 @@ void draw_gaze(Painter& p, const Shown& s) {
 
 std::vector<Box> console_plates(const Shown& s) {
   std::vector<Box> out{kDiver, kCompass, kAlarmBand, kHeart, kBreath, streams_plate(s)};
+  if (!s.message.empty()) out.push_back(kMessageBand);
   if (s.condition.known) out.push_back(kCondition);
   if (!s.sonar.empty()) out.push_back(kSonar);
   if (!s.camera.empty()) out.push_back(camera_plate(s));
@@ -260,6 +262,7 @@ void draw_console(Painter& p, const Shown& s) {
   p.plate(kCompass, 14.0, kPlate);
   p.compass({502.0, 22.0, 276.0, 46.0}, s, 14.0);
   if (any_alarm(s)) p.alarm_band(kAlarmBand, s, 20.0);
+  p.message_band(kMessageBand, s, 20.0);
   draw_condition(p, s);
   const auto rate = [](double bpm) { return FixedText::of("{:.0f}/min", bpm); };
   const auto volume = [&](double litres) {

@@ -11,17 +11,18 @@
 
 namespace neritic::hud {
 
-class FixedText {
+template <std::size_t kBytes>
+class FixedTextOf {
  public:
-  FixedText() = default;
-  FixedText(std::string_view text) {
+  FixedTextOf() = default;
+  FixedTextOf(std::string_view text) {
     size_ = static_cast<std::uint8_t>(std::min(text.size(), bytes_.size()));
     std::copy_n(text.data(), size_, bytes_.data());
   }
-  FixedText(const char* text) : FixedText(std::string_view(text)) {}
+  FixedTextOf(const char* text) : FixedTextOf(std::string_view(text)) {}
   template <class... Args>
-  static FixedText of(fmt::format_string<Args...> form, Args&&... args) {
-    FixedText out;
+  static FixedTextOf of(fmt::format_string<Args...> form, Args&&... args) {
+    FixedTextOf out;
     const auto end =
         fmt::format_to_n(out.bytes_.data(), out.bytes_.size(), form, std::forward<Args>(args)...);
     out.size_ = static_cast<std::uint8_t>(std::min(end.size, out.bytes_.size()));
@@ -29,11 +30,14 @@ class FixedText {
   }
   std::string_view view() const { return {bytes_.data(), size_}; }
   bool empty() const { return size_ == 0; }
-  bool operator==(const FixedText&) const = default;
+  bool operator==(const FixedTextOf&) const = default;
 
  private:
-  std::array<char, 31> bytes_{};
+  std::array<char, kBytes> bytes_{};
   std::uint8_t size_ = 0;
 };
+
+using FixedText = FixedTextOf<31>;
+using LongText = FixedTextOf<64>;  // a message of an acoustic modem
 
 }  // namespace neritic::hud

@@ -17,8 +17,24 @@ std::string_view wind_of(int degrees) {
 
 }  // namespace
 
+// Where a text is broken into two lines: at the space nearest to its middle, else between two
+// characters there; its end where it is too short.
+std::size_t middle_of(std::string_view utf8) {
+  const std::size_t middle = utf8.size() / 2;
+  for (std::size_t off = 0; off <= middle; ++off)
+    for (const std::size_t at : {middle - off, middle + off})
+      if (at > 0 && at + 1 < utf8.size() && utf8[at] == ' ') return at;
+  std::size_t at = middle;
+  while (at < utf8.size() && (static_cast<unsigned char>(utf8[at]) & 0xC0) == 0x80) ++at;
+  return at > 0 ? at : utf8.size();
+}
+
 bool any_alarm(const Shown& shown) {
   return std::ranges::any_of(shown.alarms, [](AlarmLevel l) { return l != AlarmLevel::kOff; });
+}
+
+bool any_band(const Shown& shown) {
+  return any_alarm(shown) || !shown.message.empty();
 }
 
 Tone tone_of(const Shown& shown, Alarm alarm) {
@@ -235,6 +251,35 @@ void Painter::alarm_band(const Box& box, const Shown& shown, double size) {
   text(left, box.y + space + size, fitted(what, size), what, kBlack, Align::kLeft, Face::kBold);
   text(left, box.bottom() - space, fitted(act, 0.75 * size), act, kBlack, Align::kLeft,
        Face::kBold);
+}
+
+void Painter::message_band(const Box& box, const Shown& shown, double size) {
+  const std::string_view words = shown.message.view();
+  if (words.empty()) return;
+  plate(box, 8.0, kLabel);
+  const double left = box.x + 12.0, room = box.w - 24.0, label = 0.62 * size, least = label;
+  const auto fitted = [&](std::string_view line, double wanted, Face face) {
+    return std::min(wanted, wanted * room / width(wanted, line, face));
+  };
+  // A long line is drawn thinner before it is cut.
+  const auto line_at = [&](double y, std::string_view line, double wanted, Face face) {
+    if (fitted(line, wanted, face) < least) face = Face::kRegular;
+    const double fits = std::max(fitted(line, wanted, face), least);
+    text(left, y, fits, canvas_.shortened(scale_ * fits, line, scale_ * room, face), kBlack,
+         Align::kLeft, face);
+  };
+  // Two lines where one would be as small.
+  const double two = 0.78 * size;
+  const std::size_t cut = fitted(words, size, Face::kBold) < two ? middle_of(words) : words.size();
+  const bool broken = cut < words.size();
+  const double high = broken ? two : size;
+  const double space = (box.h - label - (broken ? 2.0 : 1.0) * high) / (broken ? 4.0 : 3.0);
+  double y = box.y + space + label;
+  line_at(y, shown.message_from.view(), label, Face::kRegular);
+  line_at(y += space + high, words.substr(0, cut), high, Face::kBold);
+  if (!broken) return;
+  const std::string_view rest = words.substr(cut);
+  line_at(y + space + high, rest.front() == ' ' ? rest.substr(1) : rest, high, Face::kBold);
 }
 
 }  // namespace neritic::hud

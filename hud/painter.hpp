@@ -75,6 +75,8 @@ class Painter {
   void compass(const Box& box, const Shown& shown, double size);
   // The most pressing alarm with what to do, and how many others there are; nothing without alarms.
   void alarm_band(const Box& box, const Shown& shown, double size);
+  // A message: who sent it, and its words in one line or two; nothing without one.
+  void message_band(const Box& box, const Shown& shown, double size);
 
  private:
   draw2d::Canvas& canvas_;
@@ -84,6 +86,8 @@ class Painter {
 
 Tone tone_of(const Shown& shown, Alarm alarm);
 bool any_alarm(const Shown& shown);
+// Whether a band lies over a layout that a diver wears: an alarm, else a message.
+bool any_band(const Shown& shown);
 // The plate's and the figures' colour.
 draw2d::Color plate_of(const Tone& tone);
 draw2d::Color ink_of(const Tone& tone);

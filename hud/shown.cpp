@@ -169,6 +169,10 @@ Shown shown_of(LayoutKind layout, Units units, const DiveData& data, const Alarm
   out.alarms = alarms.level;
   out.advice = advice_of({alarms.level, room_of(data), data.other_gas, data.leaner_gas,
                           FixedText::of("{} {}", out.stop.view(), unit_names(units).depth)});
+  if (data.message_age_s >= 0.0 && data.message_age_s <= kMessage_s) {
+    out.message = data.message;
+    out.message_from = data.message_from;
+  }
   const bool danger = std::ranges::any_of(
       alarms.level, [](AlarmLevel level) { return level == AlarmLevel::kDanger; });
   out.flashes = danger || out.condition.unconscious;

@@ -64,6 +64,9 @@ struct Shown {
   ShownCondition condition;
   std::array<AlarmLevel, kAlarms> alarms{};
   Advice advice;
+  // In the band while no alarm is on; on the console beside it. Empty: none.
+  LongText message;
+  FixedText message_from;
   // Whether a danger is shown, and whether this is the half of a second of its other colours.
   bool flashes = false, flash = false;
   // 0: not known; 1 to 255 from a trace's lower to its upper end.
@@ -76,6 +79,9 @@ struct Shown {
 
   bool operator==(const Shown&) const = default;
 };
+
+// So long a message stays, by the scene's time.
+inline constexpr double kMessage_s = 15.0;
 
 // The ends of the traces.
 inline constexpr double kHeartTrace_bpm[2] = {40.0, 180.0}, kLungsTrace_l[2] = {0.0, 7.0};

@@ -6,6 +6,7 @@
 #include "diver/frames.hpp"
 #include "diver/kinematics.hpp"
 #include "diver/reach.hpp"
+#include "engine/core/text.hpp"
 #include "hud/numbers.hpp"
 #include "testbed/samples/authority_words.hpp"
 #include "testbed/simulation/diver_condition.hpp"
@@ -110,6 +111,42 @@ void read_condition(const PhysicsHuman& human, const HumanPhysics& state, const 
   out.unconscious = now.lost != 0;
 }
 
+// A message's bytes as words: UTF-8 without control characters; nothing where they are none.
+std::optional<hud::LongText> words_of(const sonar::ModemMessage& message) {
+  static_assert(sizeof message.words == 64);
+  std::array<char, 64> bytes{};
+  const std::size_t count = std::min<std::size_t>(message.bytes, bytes.size());
+  for (std::size_t i = 0; i < count; ++i)
+    bytes[i] = static_cast<char>(message.words[i / 8] >> (8 * (i % 8)));
+  const std::string_view text(bytes.data(), count);
+  if (text.empty() || printable(text, bytes.size()) != text) return std::nullopt;
+  return hud::LongText(text);
+}
+
+// The newest that the modem received and still knows.
+void read_message(const PhysicsWorld& world, std::size_t diver,
+                  const sim::Snapshot<PhysicsState>& snapshot, hud::DiveData& out) {
+  const Modems& modems = world.modems();
+  const auto own = modems.find(OwnerSort::kDiver, static_cast<std::uint32_t>(diver));
+  if (!own) return;
+  const sonar::ModemState& state = snapshot.state.modems()[*own];
+  const std::uint64_t all = state.counts.all();
+  const std::uint64_t kept = std::min<std::uint64_t>(all, sonar::ModemState::kKept);
+  for (std::uint64_t k = all; k > all - kept; --k) {
+    const sonar::ModemReport& report = state.reports[(k - 1) % sonar::ModemState::kKept];
+    if (report.event != sonar::ModemEvent::kReceived ||
+        report.message.kind != sonar::ModemKind::kMessage ||
+        report.message.from >= modems.all().size())
+      continue;
+    const auto words = words_of(report.message);
+    if (!words) continue;  // for a program
+    out.message = *words;
+    out.message_from = std::string_view(modems.all()[report.message.from].name);
+    out.message_age_s = snapshot.time_s - report.at_s;
+    return;
+  }
+}
+
 hud::Health health_of(GroupPhase phase) {
   switch (phase) {
     case GroupPhase::kWaiting:
@@ -133,6 +170,7 @@ hud::DiveData instrument_data(const PhysicsWorld& world, std::size_t diver,
   read_gas(human, state, out);
   read_body(human, state, out);
   if (human.condition) read_condition(human, state, snapshot.state, out);
+  read_message(world, diver, snapshot, out);
   return out;
 }
 

@@ -54,6 +54,7 @@ void for_each_number(Data& d, Visit&& visit) {
   visit("heart_bpm", d.heart_bpm);
   visit("breath_bpm", d.breath_bpm);
   visit("lungs_m3", d.lungs_m3);
+  visit("message_age_s", d.message_age_s);
   visit("saturation", d.saturation);
   visit("co2_mmhg", d.co2_mmhg);
   visit("narcotic_depth_m", d.narcotic_depth_m);

@@ -13,7 +13,7 @@ namespace neritic::testbed {
 
 using NamedNumbers = std::vector<std::pair<std::string, double>>;
 
-// All but the time.
+// All but the time, and but a message's words.
 NamedNumbers numbers_of(const hud::DiveData& data);
 
 // Takes one number, as if a stranger had sent it: what cannot be is not known. False: no such name,

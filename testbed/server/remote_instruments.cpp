@@ -30,7 +30,7 @@ constexpr std::size_t kMostStreams = 64;
 
 std::string text_in(const json& map, const char* key) {
   const auto at = map.find(key);
-  return at != map.end() && at->is_string() ? printable(at->get_ref<const std::string&>())
+  return at != map.end() && at->is_string() ? printable(at->get_ref<const std::string&>(), 64)
                                             : std::string();
 }
 
@@ -52,6 +52,8 @@ Result<Heard> heard_of(const json& map, const std::string& where) {
   for (const auto& [name, value] : numbers->items())
     if (value.is_number()) (void)set_number(news.data, name, value.get<double>());
   news.data.gas_known = news.data.gas_known && diver::is_mix(news.data.gas);
+  news.data.message = std::string_view(text_in(map, "message"));
+  news.data.message_from = std::string_view(text_in(map, "message_from"));
   const auto streams = map.find("streams");
   if (streams == map.end() || !streams->is_array()) return news;
   for (const json& stream : *streams) {

@@ -326,6 +326,8 @@ void Server::Network::answer(const Answer& answer) {
       json& numbers = map["numbers"] = json::object();
       for (const auto& [name, value] : answer.instruments->numbers) numbers[name] = value;
       map["streams"] = answer.instruments->streams;
+      map["message"] = answer.instruments->message;
+      map["message_from"] = answer.instruments->message_from;
       break;
     }
     case Op::kSources: {

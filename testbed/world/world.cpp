@@ -233,9 +233,12 @@ Result<Instruments> World::instruments(const std::string& name) const {
   }
   const auto diver = static_cast<std::size_t>(found - humans.begin());
   const auto& newest = parts_->newest();
+  const hud::DiveData data = instrument_data(parts_->world(), diver, newest);
   Instruments out{.time_s = newest.time_s,
-                  .numbers = numbers_of(instrument_data(parts_->world(), diver, newest)),
-                  .streams = {}};
+                  .numbers = numbers_of(data),
+                  .streams = {},
+                  .message = std::string(data.message.view()),
+                  .message_from = std::string(data.message_from.view())};
   for (const hud::StreamHealth& stream :
        stream_health(newest.state.humans()[diver], parts_->physics->inbox().source_names()))
     out.streams.push_back({std::string(stream.name.view()), std::string(stream.note.view()),

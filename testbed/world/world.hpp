@@ -106,6 +106,7 @@ struct Instruments {
   double time_s = 0.0;
   std::vector<std::pair<std::string, double>> numbers;
   std::vector<std::array<std::string, 3>> streams;
+  std::string message, message_from;  // the newest words that the diver's modem received
 };
 
 // A source of samples (a device of the scene, a program, a client of the server) and what became

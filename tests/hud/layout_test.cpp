@@ -114,8 +114,26 @@ DiveData wordy_dive() {
   return d;
 }
 
+// Messages by modem: short, of 64 bytes, without a space, in other letters, beside an alarm.
+std::vector<NamedDive> messages() {
+  std::vector<NamedDive> dives;
+  for (const char* const words :
+       {"FOLLOW ME", "COME BACK TO THE ANCHOR LINE NOW, YOUR GAS IS LOW, I LIGHT IT UP",
+        "WWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWW",
+        "\u00c9toile \u00e0 b\u00e2bord \u03b1 42\u00b0, tournez \u00e0 droite"}) {
+    DiveData d = calm_dive();
+    d.message = words, d.message_from = "a vehicle with a long name, one", d.message_age_s = 3.0;
+    dives.push_back({words, d});
+  }
+  DiveData alarmed = alarmed_dive(Alarm::kGas, AlarmLevel::kDanger);
+  alarmed.message = "FOLLOW ME", alarmed.message_from = "rov", alarmed.message_age_s = 0.0;
+  dives.push_back({"message and alarm", alarmed});
+  return dives;
+}
+
 std::vector<NamedDive> tested_dives() {
   std::vector<NamedDive> dives = all_dives();
+  for (NamedDive& dive : messages()) dives.push_back(std::move(dive));
   dives.push_back({"long", long_dive(false)});
   dives.push_back({"long stops", long_dive(true)});
   dives.push_back({"wordy", wordy_dive()});
@@ -171,10 +189,38 @@ TEST(HudLayout, NoTextLeavesThePictureOrMeetsAnother) {
     }
 }
 
+bool shows(const Hud& hud, std::string_view words) {
+  return std::ranges::any_of(hud.marks(),
+                             [&](const TextMark& mark) { return mark.text.view() == words; });
+}
+
+TEST(HudLayout, AMessageIsShownForAWhileAndAfterAnyAlarm) {
+  for (const Layout& layout : layouts()) {
+    const bool console = layout.kind == LayoutKind::kConsole;
+    DiveData d = calm_dive();
+    d.message = "FOLLOW ME", d.message_from = "rov", d.message_age_s = 0.0;
+    EXPECT_TRUE(shows(hud_of(layout.kind, d), "FOLLOW ME")) << layout.name;
+    EXPECT_TRUE(shows(hud_of(layout.kind, d), "rov")) << layout.name;
+    d.message_age_s = kMessage_s + 0.1;
+    EXPECT_FALSE(shows(hud_of(layout.kind, d), "FOLLOW ME")) << layout.name;
+    d.message_age_s = kUnknown;
+    EXPECT_FALSE(shows(hud_of(layout.kind, d), "FOLLOW ME")) << layout.name;
+    const NamedDive alarmed = messages().back();
+    EXPECT_EQ(shows(hud_of(layout.kind, alarmed.data), "FOLLOW ME"), console) << layout.name;
+    // In two lines, whole.
+    const NamedDive wordy = messages()[1];
+    EXPECT_TRUE(shows(hud_of(layout.kind, wordy.data),
+                      FixedText("COME BACK TO THE ANCHOR LINE NOW,").view()))
+        << layout.name;
+  }
+}
+
 // By the pixels: the brightest and the darkest of each text's box, over each water.
 TEST(HudLayout, EveryTextHasAContrastOfSevenOverBlueGreenAndBlackWater) {
+  std::vector<NamedDive> dives = all_dives();
+  for (NamedDive& dive : messages()) dives.push_back(std::move(dive));
   for (const Layout& layout : layouts())
-    for (const NamedDive& dive : all_dives()) {
+    for (const NamedDive& dive : dives) {
       const Hud hud = hud_of(layout.kind, dive.data);
       const ImageU8& picture = hud.picture();
       for (const auto& water : kWaters)

@@ -95,8 +95,13 @@ class PersonsSide(unittest.TestCase):
 class FakeRobot:
     """What the wizard tells it, and when."""
 
-    def __init__(self, name="rov"):
-        self.name, self.told, self.grips = name, [], []
+    def __init__(self, name="rov", modem=0):
+        self.name, self.modem, self.told, self.grips, self.sent = name, modem, [], [], []
+
+    def send(self, words):
+        if words in self.sent:
+            raise ValueError("busy")
+        self.sent.append(words)
 
     def grip(self, choice):
         self.grips.append(choice)
@@ -114,12 +119,13 @@ class FakeRobot:
 class Wizard(unittest.TestCase):
     """The console at a terminal of its own, with a fake robot."""
 
-    def session(self, *presses, robots=("rov",), grips=False, **flags):
+    def session(self, *presses, robots=("rov",), grips=False, modems=0, divers_modem=0, **flags):
         """(the orders of the robot that has some, markers) of keys and pauses."""
         import wizard
-        self.robots, marks, (ours, theirs) = [FakeRobot(name) for name in robots], [], pty.openpty()
+        self.robots, marks, (ours, theirs) = [FakeRobot(name, modems) for name in robots], [], pty.openpty()
+        diver = SimpleNamespace(name="diver", modem=divers_modem, jacket=lambda: None)
         streams = [SimpleNamespace(name=f"{name}/gripper") for name in robots if grips]
-        world = SimpleNamespace(agents={r.name: r for r in self.robots}, streams=streams, close=lambda: None)
+        world = SimpleNamespace(agents={a.name: a for a in [*self.robots, diver]}, streams=streams, close=lambda: None)
 
         def connect(address, **given):
             self.connected = address, given
@@ -181,6 +187,15 @@ class Wizard(unittest.TestCase):
         for wrong in ("no_such_program_here -x", "", "'"):
             with self.assertRaisesRegex(scenario.Refused, "--speak: found .*; accepted"):
                 self.session(speak=wrong)
+
+    def test_phrases_go_by_modem_to_a_diver_who_has_one(self):
+        _, marks = self.session(0.2, "1", 0.2, "2", 0.2, "1", 0.3, modems=1, divers_modem=2)
+        self.assertEqual(self.robots[0].sent, ["come here", "wait"])
+        self.assertEqual([m["sent"] for m in marks if m["marker"] == "wizard says"], [True, True, False])
+        for modems, divers_modem in ((0, 1), (1, 0)):
+            _, marks = self.session(0.2, "1", 0.3, modems=modems, divers_modem=divers_modem)
+            self.assertEqual(self.robots[0].sent, [])
+            self.assertEqual([m["sent"] for m in marks if m["marker"] == "wizard says"], [False])
 
     def test_keys_that_come_at_once_are_all_taken(self):
         _, marks = self.session(0.3, "135", 0.5)

@@ -19,7 +19,7 @@ COMMANDS = {
               "overwrite workers"),
     "dive": ("log plot record save timeline screenshot",
              "headless display bindings refresh log-rate record-images play replay scene add water restore seed runs serve keys markers "
-             "realtime json fast panels hud diver units quality seconds frames size sensor view swim task device validate"),
+             "realtime json fast panels hud diver units quality seconds frames size sensor view swim operator task device validate"),
     "serve": ("record recordings", "bind keys realtime lockstep clients seconds seed no-shared-memory device validate"),
     "tradeoff": ("out", "scene kind recordings device quick"),
     "check": ("", "integrator hz json"),

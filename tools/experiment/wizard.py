@@ -1,5 +1,6 @@
 """A Wizard of Oz's console: an experimenter in another room flies the robot of a served dive by keys, unseen, works its gripper and
-speaks for it by numbered phrases: a program of the experimenter's says them (--speak), or the experimenter does. Each key is a marker.
+speaks for it by numbered phrases: the robot's modem sends them to a diver who has one and reads them on the instruments, a program of
+the experimenter's says them (--speak), or the experimenter does. Each key is a marker.
 From the first key that flies on the robot is the wizard's until 0: without a key it stays where it is. `neritic serve SCENE --realtime`
 or `neritic dive SCENE --serve` beside it; keys go through a terminal."""
 import math
@@ -26,10 +27,11 @@ PHRASES = {"1": "come here", "2": "wait", "3": "look there", "4": "go up", "5": 
 GRIPS = {"g": "close", "o": "open"}
 
 
-def help_of(robot, grips, speaks):
+def help_of(robot, grips, speaks, writes):
+    phrases = "" if speaks else "go to the diver's instruments by modem: " if writes else "are markers of what you say: "
     return (f"{robot}: w s forward, back; a d to the sides; r f up, down; q e turn; space stop and stay; "
             + ("g o close, open the gripper; " if grips else "")
-            + f"1-5 {'' if speaks else 'are markers of what you say: '}{', '.join(PHRASES.values())}; 0 gives the robot back; x ends")
+            + f"1-5 {phrases}{', '.join(PHRASES.values())}; 0 gives the robot back; x ends")
 
 
 class Voice:
@@ -77,6 +79,20 @@ def robot_of(world, name):
     return robots[name] if name is not None else next(iter(robots.values()))
 
 
+def is_read(world, robot):
+    """Whether a diver's modem can hear the robot's, so that phrases come to the diver's instruments."""
+    return bool(robot.modem) and any(a.modem for a in world.agents.values() if hasattr(a, "jacket"))
+
+
+def send(robot, phrase, refusals):
+    """Whether the robot's modem took the phrase: it is busy while one is on its way."""
+    try:
+        robot.send(phrase)
+    except refusals:
+        return False
+    return True
+
+
 def way_of(pressed, at):
     """(forward, left, up, yaw rate) of the keys pressed within the last 0.6 s; {key: when}."""
     held = [KEYS[k] for k, when in pressed.items() if at - when < 0.6]
@@ -107,7 +123,7 @@ def run(asked, place, note):
         raise Failed(f"study wizard: {error}") from None
     try:
         robot = robot_of(world, asked.robot)
-        _play(world, robot, voice, note)
+        _play(world, robot, voice, note, (neritic.Error, neritic.BadInput))
     except (neritic.Error, neritic.BadInput) as error:
         raise Failed(f"study wizard: {error}") from None
     finally:
@@ -115,9 +131,10 @@ def run(asked, place, note):
         world.close()
 
 
-def _play(world, robot, voice, note):
+def _play(world, robot, voice, note, refusals):
     grips = any(stream.name == f"{robot.name}/gripper" for stream in world.streams)
-    print(help_of(robot.name, grips, bool(voice.words)), flush=True)
+    writes = is_read(world, robot)
+    print(help_of(robot.name, grips, bool(voice.words), writes), flush=True)
     note(marker="wizard begins", robot=robot.name)
     before, pressed, told = termios.tcgetattr(sys.stdin), {}, None
     tty.setcbreak(sys.stdin)
@@ -130,9 +147,10 @@ def _play(world, robot, voice, note):
                 if key in KEYS:
                     pressed[key] = time.monotonic()
                 elif key in PHRASES:
-                    note(marker="wizard says", phrase=PHRASES[key], spoken=bool(voice.words))
+                    sent = writes and send(robot, PHRASES[key], refusals)
+                    note(marker="wizard says", phrase=PHRASES[key], spoken=bool(voice.words), sent=sent)
                     voice.say(PHRASES[key])
-                    print(f"{'said' if voice.words else 'marked: say'}: {PHRASES[key]}", flush=True)
+                    print(f"{'said' if voice.words else 'sent' if sent else 'marked: say'}: {PHRASES[key]}", flush=True)
                 elif key in GRIPS and grips:
                     robot.grip(GRIPS[key])
                     note(marker="wizard grips", gripper=GRIPS[key])

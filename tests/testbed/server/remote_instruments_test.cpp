@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <fstream>
 #include <limits>
 #include <thread>
 
@@ -20,10 +21,19 @@ namespace {
 // A dive that is served until this ends.
 class ServedWorld {
  public:
-  explicit ServedWorld(std::uint16_t port, std::uint64_t steps = 480) {
-    auto world = World::open(test::source_dir() / "assets/scenes/ascent.toml", {});
+  // said: by the rov's modem to all before it is served.
+  explicit ServedWorld(std::uint16_t port, std::uint64_t steps = 480,
+                       const std::filesystem::path& scene = "ascent.toml",
+                       std::string_view said = {}) {
+    auto world = World::open(test::source_dir() / "assets/scenes" / scene, {});
     EXPECT_TRUE(world.ok()) << (world.ok() ? "" : world.error().message);
     world_ = std::move(*world);
+    if (!said.empty()) {
+      std::vector<double> bytes{0.0};
+      for (const char c : said) bytes.push_back(static_cast<unsigned char>(c));
+      const Status sent = world_->command("rov", "send", bytes);
+      EXPECT_TRUE(sent.ok()) << (sent.ok() ? "" : sent.error().message);
+    }
     EXPECT_TRUE(world_->tick(steps).ok());
     wanted_ = world_->instruments("diver").value();
     auto started = Server::start(facts_of(*world_, false, "test"), hand_off_,
@@ -61,6 +71,34 @@ bool comes(const std::function<bool()>& is) {
   for (int i = 0; i < 1500; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(20)))
     if (is()) return true;
   return false;
+}
+
+// What a modem of the diver's receives in words is on the instruments, here and far away; bytes
+// for a program are not.
+TEST(RemoteInstrumentsTest, TheDiverReadsWhatTheModemReceives) {
+  const test::ScratchFolder folder;
+  const std::filesystem::path scene = folder / "loud.toml";  // nothing is lost
+  std::ofstream(scene) << fmt::format(
+      "include = \"{}\"\n[[objects]]\nname = \"diver\"\nmodem = {{ fading = false }}\n"
+      "[[vehicles]]\nname = \"rov\"\nmodem = {{ fading = false, source_level_db = 180 }}\n",
+      (test::source_dir() / "assets/scenes/talk.toml").string());
+  const ServedWorld server(0, 720, scene, "FOLLOW ME, \u03b1 42\u00b0");
+  EXPECT_EQ(server.wanted().message, "FOLLOW ME, \u03b1 42\u00b0");
+  EXPECT_EQ(server.wanted().message_from, "rov");
+  auto connected = RemoteInstruments::connect(quick(server.address()));
+  ASSERT_TRUE(connected.ok()) << connected.error().message;
+  InstrumentNews near;
+  ASSERT_TRUE(comes([&] {
+    near = (*connected)->read();
+    return near.data.time_s > 0.0 && !near.data.link_lost;
+  }));
+  EXPECT_EQ(near.data.message.view(), server.wanted().message);
+  EXPECT_EQ(near.data.message_from.view(), "rov");
+  // 3 s after it was sent, less the time that 18 bytes take.
+  EXPECT_GT(near.data.message_age_s, 1.5);
+  EXPECT_LT(near.data.message_age_s, 2.8);
+  for (const std::string_view bytes : {"\x01\x02\x03", "\xff\xfe"})
+    EXPECT_EQ(ServedWorld(0, 720, scene, bytes).wanted().message, "");
 }
 
 TEST(RemoteInstrumentsTest, NumbersAreTheStatesAndAServerThatComesBackIsReadAgain) {

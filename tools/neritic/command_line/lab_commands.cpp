@@ -188,7 +188,9 @@ void add_study(CLI::App& app, CommandLine& line) {
       "neritic study table FOLDER                    the scores of run's questionnaires, by "
       "pseudonym\n"
       "neritic study wizard FOLDER P01               a console that flies the robot of a served "
-      "dive\n"
+      "dive;\n"
+      "    --robot NAME, --server ADDRESS, --key FILE, --server-key FILE: which robot, and where;\n"
+      "    --speak COMMAND: a program that says its phrases\n"
       "More: tools/experiment/STUDIES.md");
   command->callback([command, &line] {
     line.run = [words = command->remaining()] { return nothing_to_say(run_study(words)); };
