@@ -20,11 +20,51 @@ constexpr double kLeastWay_m_s = 0.05;
 // Headings at which a vehicle may face a current.
 constexpr int kHeadings = 72;
 
-// The force along a direction of the body's axes that control gets from the thrusters at most.
-double most_along(const PhysicsVehicle& vehicle, const rov::Vec6& direction) {
+// Surge, sway, heave, yaw: what a mission controls. Roll and pitch right themselves.
+struct Axis {
+  std::size_t axis;
+  const char *name, *words;
+};
+constexpr Axis kAxes[] = {{0, "surge", "forward or back (surge)"},
+                          {1, "sway", "to the side (sway)"},
+                          {2, "heave", "up or down (heave)"},
+                          {5, "yaw", "round (yaw)"}};
+// Along these axes a push counts as free of others up to this share of it.
+constexpr double kFree = 0.05;
+
+// How large the push along controlled axes is, moments over the longest arm of the thrusters.
+double size_n(const rov::Allocator& allocator, const rov::Vec6& wrench) {
+  double arm_m = 1e-3, sum = 0.0;
+  for (std::size_t k = 0; k < allocator.count(); ++k) {
+    std::array<double, rov::kMaxThrusters> one{};
+    one[k] = 1.0;
+    arm_m = std::max(arm_m, std::abs(allocator.wrench_of(one)[5]));
+  }
+  for (const Axis& a : kAxes) {
+    const double part = a.axis == 5 ? wrench[5] / arm_m : wrench[a.axis];
+    sum += part * part;
+  }
+  return std::sqrt(sum);
+}
+
+// The force along a direction of the body's axes that control gets from the thrusters at most, and
+// what that pushes along other controlled axes, as a share of it.
+struct Push {
+  double along_n = 0.0, aside = 0.0;
+};
+Push push_along(const PhysicsVehicle& vehicle, const rov::Vec6& direction) {
   const rov::Allocator& allocator = vehicle.kind.allocator;
-  const auto given = allocator.allocate(1e6 * direction, vehicle.file.gains.saturation).force_n;
-  return std::max(0.0, dot(allocator.wrench_of(given), direction));
+  const auto forces = allocator.allocate(1e6 * direction, vehicle.file.gains.saturation).force_n;
+  const rov::Vec6 wrench = allocator.wrench_of(forces);
+  Push out{std::max(0.0, dot(wrench, direction)), 0.0};
+  const rov::Vec6 along = out.along_n * direction;
+  const double aside_n = size_n(allocator, wrench - along);
+  if (aside_n > 0.0) out.aside = aside_n / std::max(size_n(allocator, along), 1e-9);
+  return out;
+}
+
+double most_along(const PhysicsVehicle& vehicle, const rov::Vec6& direction) {
+  return push_along(vehicle, direction).along_n;
 }
 
 rov::Vec6 axis_of(std::size_t axis, double sign) {
@@ -33,16 +73,23 @@ rov::Vec6 axis_of(std::size_t axis, double sign) {
   return out;
 }
 
+// Axes without a push, and those along which it pushes only together with others.
 void add_axes(const PhysicsVehicle& vehicle, std::vector<std::string>& lines) {
-  constexpr std::pair<std::size_t, const char*> kAxes[] = {{0, "forward or back (surge)"},
-                                                           {1, "to the side (sway)"},
-                                                           {2, "up or down (heave)"},
-                                                           {5, "round (yaw)"}};
-  for (const auto& [axis, words] : kAxes)
-    if (std::min(most_along(vehicle, axis_of(axis, 1.0)),
-                 most_along(vehicle, axis_of(axis, -1.0))) < 1e-3)
+  std::vector<std::string_view> coupled;
+  for (const Axis& a : kAxes) {
+    const Push ahead = push_along(vehicle, axis_of(a.axis, 1.0)),
+               back = push_along(vehicle, axis_of(a.axis, -1.0));
+    if (std::min(ahead.along_n, back.along_n) < 1e-3)
       lines.push_back(fmt::format("{}: its thrusters push 0 {} {}: that axis is not controlled",
-                                  vehicle.name, axis == 5 ? "N m" : "N", words));
+                                  vehicle.name, a.axis == 5 ? "N m" : "N", a.words));
+    else if (std::max(ahead.aside, back.aside) >= kFree)
+      coupled.push_back(a.name);
+  }
+  if (!coupled.empty())
+    lines.push_back(
+        fmt::format("{}: its thrusters push along {} only together, so that none of these axes is "
+                    "controlled by itself: it may not hold its heading or its line",
+                    vehicle.name, fmt::join(coupled, " and ")));
 }
 
 // A weight beside the lift that the thrusters do not balance, so that the vehicle tilts.
