@@ -134,7 +134,8 @@ struct Dynamics {
   std::optional<Vec3> tether_anchor_m;
   std::optional<Tether> tether;  // beside a file without one
   std::optional<Grip> gripper;
-  std::optional<Wash> wash;  // absent: thrusters move no water but by their force
+  std::optional<Wash> wash;      // absent: thrusters move no water but by their force
+  bool near_added_mass = false;  // added mass by how near the bottom and the surface are
   // The state that control and guidance use: the vehicle's own sensors, or its true state.
   // kBySensors: the sensors, if it has enough of them.
   enum class Navigation { kBySensors, kTruth, kMeasured };

@@ -18,11 +18,13 @@ constexpr Interval kAnySeconds{-1e9, 1e9, false, false, "seconds"};
 constexpr std::size_t kMaxFailedThruster = 16;
 
 constexpr Key kPhysicsOnly[] = {
-    "collision",  "dynamics",  "mission", "failed_thrusters", "tether_anchor_m", "tether",
-    "navigation", "human",     "swim",    "jacket_buttons",   "inputs",          "modem",
-    "condition",  "regulator", "thing",   "gripper",          "hands",           "wash"};
-constexpr Key kDynamicsOnly[] = {
-    "mission", "failed_thrusters", "tether_anchor_m", "tether", "navigation", "gripper", "wash"};
+    "collision",      "dynamics",  "mission", "failed_thrusters", "tether_anchor_m", "tether",
+    "navigation",     "human",     "swim",    "jacket_buttons",   "inputs",          "modem",
+    "condition",      "regulator", "thing",   "gripper",          "hands",           "wash",
+    "near_added_mass"};
+constexpr Key kDynamicsOnly[] = {"mission", "failed_thrusters", "tether_anchor_m",
+                                 "tether",  "navigation",       "gripper",
+                                 "wash",    "near_added_mass"};
 // The default classes that vehicles cannot pass.
 constexpr Key kSolidClasses[] = {"seabed", "rock", "wreck", "structure", "pipe"};
 
@@ -134,6 +136,7 @@ class VehiclePhysicsReader {
       dynamics.tether_anchor_m = reader_.vector3("tether_anchor_m", Vec3(0.0), kAnyMetres);
     dynamics.gripper = read_grip(reader_, "gripper");
     dynamics.wash = read_wash(reader_);
+    dynamics.near_added_mass = reader_.flag("near_added_mass", false);
     dynamics.tether = read_tether(reader_, object_.object.name, tether);
     if (dynamics.tether && dynamics.tether_anchor_m)
       reader_.refuse("tether_anchor_m", "no such key beside tether");

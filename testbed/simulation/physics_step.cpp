@@ -4,6 +4,7 @@
 // fourth. A vehicle's step has a part between any two instants of its control and its sensors; all
 // parts but the last end before pairs meet.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <thread>
@@ -187,6 +188,8 @@ StepScratch PhysicsWorld::scratch(unsigned threads) const {
                       {},
                       std::vector<sim::ContactMemory>(threads),
                       sim::Workers(threads)};
+  for (std::size_t i = 0; i < vehicles_.size(); ++i)
+    if (vehicles_[i].near_radius_m > 0.0) scratch.vehicles[i].near = {vehicles_[i].vehicle};
   scratch.finder.begin(vehicles_.size(), vehicles_.size() + humans_.size());
   if (solid_.counts().things > 0)
     for (sim::ContactMemory& memory : scratch.contacts) memory.reserve(kRoomForContacts);
@@ -292,8 +295,9 @@ void PhysicsWorld::step_modems(const StepCall& call) const {
 // For what meets in it.
 VehicleStep PhysicsWorld::whole_step(const StepCall& call, std::size_t i) const {
   const PhysicsVehicle& vehicle = vehicles_[i];
+  const VehicleScratch& own = call.scratch.vehicles[i];
   return {vehicle.kind.solid,
-          vehicle.vehicle,
+          own.near.empty() ? vehicle.vehicle : own.near.front(),
           call.before.vehicles()[i].body,
           call.scratch.vehicles[i].acting,
           call.time.step_s,
@@ -304,7 +308,7 @@ VehicleStep PhysicsWorld::part_step(const StepCall& call, std::size_t i) const {
   const PhysicsVehicle& vehicle = vehicles_[i];
   const VehicleScratch& own = call.scratch.vehicles[i];
   return {vehicle.kind.solid,
-          vehicle.vehicle,
+          own.near.empty() ? vehicle.vehicle : own.near.front(),
           call.after.vehicles()[i].body,
           own.acting,
           length_s(call.time, own.part),
@@ -343,7 +347,33 @@ void PhysicsWorld::begin_part(const StepCall& call, std::size_t i) const {
   if (due && !steer(i, call, from_s)) ++state.body.refused_inputs;
   own.acting =
       acting_on(vehicle, call.inputs.vehicles()[i], state, from_s, length_s(call.time, own.part));
+  if (!own.near.empty()) add_near_bounds(i, state.body, from_s, own);
   own.free = free_step(part_step(call, i));
+}
+
+// The added mass of a vehicle where it is, for the part of a step to come.
+void PhysicsWorld::add_near_bounds(std::size_t i, const rov::State& state, double time_s,
+                                   VehicleScratch& own) const {
+  const PhysicsVehicle& vehicle = vehicles_[i];
+  const double radius_m = vehicle.near_radius_m, reach_m = rov::kNearBounds * radius_m;
+  const Vec3 at_ned_m = state.position_ned_m + state.attitude * vehicle.vehicle.buoyancy_centre_m;
+  std::array<rov::WaterBound, 2> bounds{};
+  std::size_t count = 0;
+  const double deep_m = at_ned_m.z + water_ned(at_ned_m, time_s).head_m;
+  if (deep_m < reach_m) bounds[count++] = {deep_m, Vec3(0.0, 0.0, 1.0), true};
+  // The plane of the bottom under it: on a slope that is nearer than the ray is long.
+  const auto bottom =
+      solid_.cast(rov::world_from_ned(at_ned_m), Vec3(0.0, -1.0, 0.0), 2.0 * reach_m);
+  if (bottom) {
+    const Vec3 normal_ned = rov::ned_from_world(bottom->normal);
+    bounds[count++] = {bottom->distance_m * -normal_ned.z, normal_ned, false};
+  }
+  const rov::Vec6 through_water =
+      rov::through_water(state.attitude, state.velocity, own.acting.current_ned_m_s);
+  own.acting.wrench =
+      own.acting.wrench + rov::near_added_mass(vehicle.vehicle, radius_m,
+                                               std::span(bounds).first(count), state.attitude,
+                                               through_water, own.near.front());
 }
 
 void PhysicsWorld::begin_human(const StepCall& call, std::size_t k) const {

@@ -189,6 +189,8 @@ Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index) {
   out.failed_thrusters = dynamics.failed_thrusters;
   if (dynamics.mission) out.mission.emplace(scene, *dynamics.mission, movers_);
   out.wash = dynamics.wash;
+  if (dynamics.near_added_mass)
+    out.near_radius_m = rov::displaced_radius_m(out.vehicle, water_kg_m3_);
   washes_ = washes_ || dynamics.wash;
   if (dynamics.tether_anchor_m)
     out.tether_anchor_ned_m = rov::ned_from_world(*dynamics.tether_anchor_m);

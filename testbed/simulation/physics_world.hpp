@@ -12,6 +12,7 @@
 #include "engine/sim/current.hpp"
 #include "engine/sim/workers.hpp"
 #include "rov/navigation.hpp"
+#include "rov/near_added_mass.hpp"
 #include "testbed/simulation/body_step.hpp"
 #include "testbed/simulation/diver_condition.hpp"
 #include "testbed/simulation/followed_points.hpp"
@@ -45,6 +46,7 @@ struct PhysicsVehicle {
   Vec3 tether_anchor_ned_m{0.0};      // of the file's
   std::optional<std::size_t> tether;  // of PhysicsState::tethers(); none: the scene names none
   std::optional<scene::Wash> wash;
+  double near_radius_m = 0.0;  // of the sphere whose added mass grows near bounds; 0: not named
   rov::State start;
   std::optional<std::size_t> readings;  // of PhysicsState::readings(); none: without sensors
   // Of PhysicsState::earlier(); none: no sensor is faster than the steps.
@@ -73,6 +75,8 @@ struct VehicleScratch {
   bool parted = false;
   bool pulled = false;    // by what it holds, or its tether
   ContactReport contact;  // of the step so far
+  // The vehicle with the added mass that it has where it is; none: as in open water.
+  std::vector<rov::Vehicle> near;
 };
 struct HumanScratch {
   HumanStep moving;
@@ -200,6 +204,8 @@ class PhysicsWorld {
   VehicleStep part_step(const StepCall& call, std::size_t i) const;
   void begin_vehicle(const StepCall& call, std::size_t i, unsigned thread) const;
   void begin_part(const StepCall& call, std::size_t i) const;
+  void add_near_bounds(std::size_t i, const rov::State& state, double time_s,
+                       VehicleScratch& own) const;
   void end_part(const StepCall& call, std::size_t i, unsigned thread) const;
   void begin_human(const StepCall& call, std::size_t k) const;
   void part_all(const StepCall& call) const;

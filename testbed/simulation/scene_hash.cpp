@@ -176,6 +176,7 @@ class SceneHash {
     if (dynamics.tether_anchor_m) vec(*dynamics.tether_anchor_m);
     if (dynamics.tether) add(*dynamics.tether);
     if (dynamics.gripper) text("gripper"), add(*dynamics.gripper);
+    if (dynamics.near_added_mass) text("near_added_mass");
     if (dynamics.wash) text("wash"), numbers(dynamics.wash->diameter_m, dynamics.wash->reach_m);
     number(dynamics.mission.has_value());
     if (dynamics.mission) add(*dynamics.mission);

@@ -5,6 +5,7 @@
 #include "rov/step_choice.hpp"
 #include "testbed/record/dive_record.hpp"
 #include "testbed/simulation/static_scene.hpp"
+#include "tests/testbed/csv_text.hpp"
 #include "tests/testbed/simulation/senders.hpp"
 
 namespace neritic::testbed {

@@ -537,6 +537,7 @@ std::vector<KeyTable> object_tables(const TestFiles& file) {
         {"gripper", vehicle(dynamics) + kTool,
          vehicle(dynamics + "gripper = { position_m = [0, 0, -1] }\n") + kTool},
         {"wash", vehicle(dynamics), vehicle(dynamics + "wash = {}")},
+        {"near_added_mass", vehicle(dynamics), vehicle(dynamics + "near_added_mass = true")},
         {"hands", diver(human) + kTool, diver(human + "hands = {}\n") + kTool},
         {"regulator", diver(human), diver(human + "regulator = {}")},
         {"inputs", "shape = \"box\"", "shape = \"box\"\ninputs = { pose = \"tracker\" }"},
