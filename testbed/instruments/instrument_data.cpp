@@ -215,10 +215,10 @@ DiverGauge gauge_of(const PhysicsHuman& human, const HumanPhysics& state) {
           diver_heading_rad(state.human.root.attitude)};
 }
 
-Pose world_from_wrist(const PhysicsHuman& human, const HumanPhysics& state) {
+Pose world_from_wrist(const PhysicsHuman& human, const HumanPhysics& state, bool right) {
   const diver::RootState& root = state.human.root;
   const Pose hand = diver::body_from_hand(
-      diver::posture_of(human.body, state.human.limbs.rotation, state.human.limbs.rate), false);
+      diver::posture_of(human.body, state.human.limbs.rotation, state.human.limbs.rate), right);
   return diver::standing_pose(root.position_ned_m + root.attitude * hand.position_m,
                               root.attitude * hand.rotation);
 }

@@ -36,7 +36,7 @@ struct DiverGauge {
 };
 DiverGauge gauge_of(const PhysicsHuman& human, const HumanPhysics& state);
 
-// The drawn left hand: origin at the wrist, axes of hud::Lock::kWrist.
-Pose world_from_wrist(const PhysicsHuman& human, const HumanPhysics& state);
+// The drawn hand: origin at the wrist, axes of hud::Lock::kWrist, as those of a tracked one.
+Pose world_from_wrist(const PhysicsHuman& human, const HumanPhysics& state, bool right = false);
 
 }  // namespace neritic::testbed

@@ -5,6 +5,7 @@
 #include "diver/frames.hpp"
 #include "diver/jacket.hpp"
 #include "diver/reach.hpp"
+#include "testbed/instruments/instrument_data.hpp"
 #include "testbed/samples/riding.hpp"
 #include "testbed/view/dive_camera.hpp"
 
@@ -24,6 +25,19 @@ constexpr double kSway_rad = radians(30.0), kStageFollow_s = 1.5,
 constexpr double kStageTurn_rad_s = radians(60.0), kLongestStageTurn_s = 0.1;
 // A wearer who looks farther off the body than a neck turns brings the body round.
 constexpr double kNeck_rad = radians(75.0), kAhead_rad = radians(20.0);
+
+// Within this time a limb comes from where it is to where it is tracked: slowly enough that the
+// water turns the body little.
+constexpr double kEase_s = 1.0;
+
+// From 0 to 1, without a jolt at either end.
+double eased(double since_s) {
+  return glm::smoothstep(0.0, kEase_s, since_s);
+}
+Pose between(const Pose& from, const Pose& to, double share) {
+  return {glm::mix(from.position_m, to.position_m, share),
+          glm::slerp(from.rotation, to.rotation, share)};
+}
 
 double off_rad(double to_rad, double from_rad) {
   return std::remainder(to_rad - from_rad, 2.0 * kPi);
@@ -147,6 +161,41 @@ Pose Wearer::riding(const Pose& world_from_tracked) const {
   return world_from_body_ ? inverse(*world_from_body_) * world_from_tracked : world_from_tracked;
 }
 
+// In its tracked place until the wearer swims: then it comes back to where a straight body has it,
+// and turns alone.
+HeadPose Wearer::head_pose(double scene_time_s) {
+  HeadPose out{riding(*world_from_head_), kHeadPlaced | (world_from_body_ ? kHeadRides : 0)};
+  if (!swims_ || by_keys_) {
+    let_go_s_.reset();
+    return out;
+  }
+  if (!let_go_s_ || scene_time_s < *let_go_s_) let_go_s_ = scene_time_s;
+  const double share = eased(scene_time_s - *let_go_s_);
+  if (world_from_body_ && share < 1.0)
+    out.world_from_head.position_m = glm::mix(out.world_from_head.position_m, eyes_m_, share);
+  else
+    out.placed &= ~kHeadPlaced;
+  return out;
+}
+
+HandPoses Wearer::hand_poses(double scene_time_s) {
+  HandPoses out;
+  for (std::size_t i = 0; i < 2; ++i) {
+    std::optional<Begun>& begun = hands_begun_[i];
+    if (!tracked_.hands[i]) {
+      begun.reset();
+      continue;
+    }
+    if (!begun || scene_time_s < begun->at_s)
+      begun = Begun{scene_time_s, riding(world_from_wrist(human(), state(), i == 1))};
+    out.world_from_hand[i] =
+        between(begun->from, riding(*tracked_.hands[i]), eased(scene_time_s - begun->at_s));
+    out.tracked |= std::uint64_t{1} << i;
+  }
+  if (out.tracked != 0 && world_from_body_) out.tracked |= kHandsRide;
+  return out;
+}
+
 Status Wearer::poll(SampleInbox& inbox, double scene_time_s) {
   if (swims_) swim(inbox, scene_time_s);
   if (!std::exchange(fresh_, false)) return {};
@@ -158,19 +207,10 @@ Status Wearer::poll(SampleInbox& inbox, double scene_time_s) {
   const TimeNs now = now_ns();
   if (world_from_head_) {
     claim(inbox, DiverGroup::kHead);
-    send(inbox, PayloadKind::kHeadPose,
-         HeadPose{riding(*world_from_head_), kHeadPlaced | (world_from_body_ ? kHeadRides : 0)},
-         now);
+    send(inbox, PayloadKind::kHeadPose, head_pose(scene_time_s), now);
   }
-  HandPoses hands;
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (!tracked_.hands[i]) continue;
-    hands.world_from_hand[i] = riding(*tracked_.hands[i]);
-    hands.tracked |= std::uint64_t{1} << i;
-  }
-  if (hands.tracked != 0) {
+  if (const HandPoses hands = hand_poses(scene_time_s); hands.tracked != 0) {
     claim(inbox, DiverGroup::kHands);
-    if (world_from_body_) hands.tracked |= kHandsRide;
     send(inbox, PayloadKind::kHandPoses, hands, now);
   }
   if (tracked_.gaze) send_gaze(inbox, *tracked_.gaze);

@@ -2,7 +2,9 @@
 // in a window the jacket's buttons, swimming by keys and where the view points, become samples of
 // the source "wearer", as those of any other device. The stage goes with the diver's body, level,
 // so that the wearer's eyes are the diver's; it turns by the wearer's stick, and with a body that
-// turns off it, but not with its strokes. Rendering thread.
+// turns off it, but not with its strokes. Hands that begin to be tracked come to their place within
+// a second, from where the body had them. A wearer who swims turns the head alone: a head in its
+// tracked place bends the spine, by which a swimmer steers. Rendering thread.
 #pragma once
 
 #include <optional>
@@ -56,6 +58,8 @@ class Wearer final : public SampleSource {
   std::optional<diver::SwimGoal> turned();
   diver::SwimGoal pushed_by_keys();
   Pose riding(const Pose& world_from_tracked) const;
+  HeadPose head_pose(double scene_time_s);
+  HandPoses hand_poses(double scene_time_s);
   void swim(SampleInbox& inbox, double scene_time_s);
   void send_gaze(SampleInbox& inbox, const xr::Tracked::Gaze& gaze);
   void send_view(SampleInbox& inbox, TimeNs now);
@@ -72,6 +76,14 @@ class Wearer final : public SampleSource {
   std::optional<double> followed_s_;  // when that of the body was taken
   bool turns_body_ = false;           // towards where the head looks
   xr::Tracked tracked_;
+  // A hand that is tracked: since when, in the scene's time, and where it was then, riding with the
+  // body.
+  struct Begun {
+    double at_s = 0.0;
+    Pose from;
+  };
+  std::array<std::optional<Begun>, 2> hands_begun_;
+  std::optional<double> let_go_s_;  // when the head of one who swims was let go of its place
   DiveInput input_;
   bool fresh_ = false;                                 // those were not sent yet
   HostHold hold_;                                      // of what is claimed
