@@ -33,6 +33,31 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
+// The step to which depths were rounded, as those of an image of whole numbers are; 0: none. Their
+// rounding is noise that neighbours of the same number do not show.
+double quantum(const std::vector<double>& depth_m) {
+  constexpr std::size_t kFewestSteps = 16;
+  constexpr double kMost_m = 0.2, kWhole = 0.01;
+  std::vector<double> seen;
+  for (const double d : depth_m)
+    if (d > 0.0 && std::isfinite(d)) seen.push_back(d);
+  const std::size_t pixels = seen.size();
+  std::ranges::sort(seen);
+  // Equal but for rounding of floats.
+  const auto same =
+      std::ranges::unique(seen, [](double a, double b) { return b - a <= 1e-6 * std::abs(b); });
+  seen.erase(same.begin(), same.end());
+  if (seen.size() < kFewestSteps || 2 * seen.size() > pixels) return 0.0;
+  double least = kMost_m;
+  for (std::size_t i = 1; i < seen.size(); ++i) least = std::min(least, seen[i] - seen[i - 1]);
+  std::size_t whole = 0;
+  for (std::size_t i = 1; i < seen.size(); ++i) {
+    const double steps = (seen[i] - seen[i - 1]) / least;
+    whole += std::abs(steps - std::round(steps)) < kWhole * steps;
+  }
+  return 10 * whole >= 9 * (seen.size() - 1) ? least : 0.0;
+}
+
 // The step to the neighbour's side along one image axis: towards the side whose depth is nearer to
 // this pixel's, or both. before and after may be absent.
 std::optional<Vec3> step(const std::optional<Vec3>& before, const Vec3& here,
@@ -70,7 +95,10 @@ class Estimator {
         const double noise_m = noise(u, v);
         const double noise_px = noise_m * q * std::sqrt(in_.intrinsics.fx * in_.intrinsics.fy);
         const int w = half_width(noise_px);
-        const auto n = w == 0 ? from_neighbours(u, v) : normal_of_plane(u, v, w, noise_m * q * q);
+        std::optional<Vec3> n;
+        for (int wide = w; wide > 0 && wide <= kWidest && !n; ++wide)
+          n = normal_of_plane(u, v, wide, noise_m * q * q);
+        if (!n) n = from_neighbours(u, v);
         if (!n) continue;
         std::copy_n(&(*n)[0], 3, &out.normals[3 * index(u, v)]);
         noises.push_back(noise_m);
@@ -135,9 +163,11 @@ class Estimator {
         }
       }
     const double scale = 1.0 / (kMedianOfNormal * std::sqrt(70.0));
+    const double rounding_m = quantum(in_.depth) / std::sqrt(12.0);
     const double everywhere = all.size() < kFewest ? 0.0 : scale * median(all);
     for (std::vector<double>& values : tiles)
-      noise_m_.push_back(values.size() < kFewest ? everywhere : scale * median(values));
+      noise_m_.push_back(
+          std::max(values.size() < kFewest ? everywhere : scale * median(values), rounding_m));
   }
   std::size_t tile(std::int64_t u, std::int64_t v) const {
     return static_cast<std::size_t>(v / kTile * tiles_x_ + u / kTile);
@@ -166,34 +196,66 @@ class Estimator {
     return n * ((glm::dot(n, here) > 0.0 ? -1.0 : 1.0) / size);
   }
 
-  // A plane n . P = d is seen at the inverse depth q = (n.x x + n.y y - n.z) / d in the ray (x, y,
-  // -1): q = x + y du + z dv of what this returns. Fitted by least squares to the pixels around;
+  struct Fit {
+    Vec3 plane{0.0};  // q = plane.x + plane.y du + plane.z dv
+    int pixels = 0;   // that lie on it
+  };
+  // By least squares to the pixels around that lie on a first guess, up to the slack a pixel off;
   // what lies off the first fits is of another surface.
-  std::optional<Vec3> plane_round(std::int64_t u, std::int64_t v, int w, double noise) const {
-    const double q = inverse(u, v);
-    // A surface turned by 72 degrees to the sight rises by 3 pixels' widths a pixel.
-    const double rise = 3.0 * q / std::sqrt(in_.intrinsics.fx * in_.intrinsics.fy);
-    Vec3 fit(q, 0.0, 0.0);  // q = fit.x + fit.y du + fit.z dv
+  std::optional<Fit> fit_from(const Vec3& guess, double slack, std::int64_t u, std::int64_t v,
+                              int w, double noise) const {
+    Fit fit{guess};
     for (int round = 0; round < 3; ++round) {
       Mat3 normal(0.0);
       Vec3 right(0.0);
-      int n = 0;
+      fit.pixels = 0;
       for (int dv = -w; dv <= w; ++dv)
         for (int du = -w; du <= w; ++du) {
           const double there = inverse(u + du, v + dv);
           if (there == 0.0) continue;
-          const double off = std::abs(there - fit.x - fit.y * du - fit.z * dv);
-          const double slack = round == 0 ? rise * std::max(std::abs(du), std::abs(dv)) : 0.0;
-          if (off > 4.0 * noise + slack) continue;
+          const double off = std::abs(there - fit.plane.x - fit.plane.y * du - fit.plane.z * dv);
+          const double more = round == 0 ? slack * std::max(std::abs(du), std::abs(dv)) : 0.0;
+          if (off > 4.0 * noise + more) continue;
           const Vec3 at(1.0, du, dv);
           normal += glm::outerProduct(at, at);
           right += at * there;
-          ++n;
+          ++fit.pixels;
         }
-      if (n < 3 || !(std::abs(glm::determinant(normal)) > 1e-9)) return std::nullopt;
-      fit = glm::inverse(normal) * right;
+      if (fit.pixels < 3 || !(std::abs(glm::determinant(normal)) > 1e-9)) return std::nullopt;
+      fit.plane = glm::inverse(normal) * right;
     }
     return fit;
+  }
+
+  // How q changes from pixel to pixel along one axis: towards the side where it changes less, or
+  // both.
+  static double slope(double before, double here, double after) {
+    const double back = here - before, forth = after - here;
+    if (before == 0.0) return after == 0.0 ? 0.0 : forth;
+    if (after == 0.0) return back;
+    return std::abs(forth) > 3.0 * std::abs(back)   ? back
+           : std::abs(back) > 3.0 * std::abs(forth) ? forth
+                                                    : 0.5 * (back + forth);
+  }
+
+  // A plane n . P = d is seen at the inverse depth q = (n.x x + n.y y - n.z) / d in the ray (x, y,
+  // -1): q = x + y du + z dv of what this returns. From a guess that faces the sight, which takes
+  // in surfaces turned by up to 72 degrees to it (they rise by 3 pixels' widths a pixel), and where
+  // that has not nearly all pixels also from the slope to the neighbours, for steeper ones: the
+  // better of them.
+  std::optional<Vec3> plane_round(std::int64_t u, std::int64_t v, int w, double noise) const {
+    constexpr double kNearlyAll = 0.9;
+    const double q = inverse(u, v);
+    const double rise = 3.0 * q / std::sqrt(in_.intrinsics.fx * in_.intrinsics.fy);
+    const auto facing_fit = fit_from({q, 0.0, 0.0}, rise, u, v, w, noise);
+    const int all = (2 * w + 1) * (2 * w + 1);
+    if (facing_fit && facing_fit->pixels >= kNearlyAll * all) return facing_fit->plane;
+    const Vec3 steep(q, slope(inverse(u - 1, v), q, inverse(u + 1, v)),
+                     slope(inverse(u, v - 1), q, inverse(u, v + 1)));
+    const auto steep_fit = fit_from(steep, 3.0 * noise, u, v, w, noise);
+    if (!steep_fit || (facing_fit && facing_fit->pixels >= steep_fit->pixels))
+      return facing_fit ? std::optional(facing_fit->plane) : std::nullopt;
+    return steep_fit->plane;
   }
 
   std::optional<Vec3> normal_of_plane(std::int64_t u, std::int64_t v, int w, double noise) const {
