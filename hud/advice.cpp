@@ -61,6 +61,7 @@ FixedText above_ceiling(const Situation& s) {
   }
   switch (s.room) {
     case Room::kAboveCeiling:
+      if (s.too_rich) return s.leaner_gas ? "CHANGE GAS, GO DOWN" : "BUDDY'S GAS, GO DOWN";
       return FixedText::of("GO DOWN TO {}", s.stop.view());
     case Room::kAtStop:
       return "HOLD STOP";
@@ -127,8 +128,7 @@ Room room_of(const DiveData& d) {
   if (std::isnan(d.depth_m) || std::isnan(d.ceiling_m)) return Room::kUnknown;
   if (!(d.ceiling_m > 0.0)) return Room::kFree;
   if (d.depth_m < d.ceiling_m) return Room::kAboveCeiling;
-  const double stop_m = d.stop_m > d.ceiling_m ? d.stop_m : d.ceiling_m;
-  return d.depth_m <= stop_m + kStopReach_m ? Room::kAtStop : Room::kBelowStop;
+  return d.depth_m <= owed_stop_m(d) + kStopReach_m ? Room::kAtStop : Room::kBelowStop;
 }
 
 Advice advice_of(const Situation& s) {

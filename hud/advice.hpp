@@ -24,6 +24,7 @@ struct Situation {
   std::array<AlarmLevel, kAlarms> alarms{};
   Room room = Room::kUnknown;
   bool other_gas = false, leaner_gas = false;  // as in DiveData
+  bool too_rich = false;                       // the gas has too much oxygen at the stop
   FixedText stop;                              // its depth with the unit
   bool on(Alarm alarm) const { return alarms[static_cast<std::size_t>(alarm)] != AlarmLevel::kOff; }
 };

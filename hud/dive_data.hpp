@@ -84,6 +84,10 @@ struct DiveData {
   }
 };
 
+// The depth of the stop that is owed: the computer's next one, or where the ceiling lies deeper (it
+// clears on the way up) the step of 3 m at or below that.
+double owed_stop_m(const DiveData& data);
+
 // A compartment as DiveData::tissues has it, at an ambient pressure.
 double tissue_bar(const diver::Buehlmann& model, const diver::TissueState& tissues,
                   std::size_t compartment, double ambient_bar);

@@ -37,7 +37,7 @@ void draw_limit(Painter& p, const Box& box, const Shown& shown, double size, dou
     p.cell({box, "NO STOP", shown.no_stop.view(), "min", size, label_size, limit_tone(shown)});
     return;
   }
-  const double part = 0.5 * box.w;
+  const double part = 0.58 * box.w;  // metres may have a decimal
   p.cell({{box.x, box.y, part, box.h},
           with_unit("STOP", unit_names(shown.units).depth).view(),
           shown.stop.view(),
@@ -45,7 +45,12 @@ void draw_limit(Painter& p, const Box& box, const Shown& shown, double size, dou
           size,
           label_size,
           limit_tone(shown)});
-  p.cell({{box.x + part, box.y, part, box.h}, "min", shown.stop_min.view(), "", size, label_size});
+  p.cell({{box.x + part, box.y, box.w - part, box.h},
+          "min",
+          shown.stop_min.view(),
+          "",
+          size,
+          label_size});
 }
 
 void draw_ceiling_or_deepest(Painter& p, const Box& box, const Shown& s, double size,
@@ -123,7 +128,7 @@ void draw_wrist(Painter& p, const Shown& s) {
     return;
   }
   p.tissues({28.0, 392.0, 150.0, 46.0}, s);
-  p.cell({{184.0, 380.0, 70.0, 64.0}, "CNS", s.cns.view(), "%", 18.0, 13.0});
+  p.cell({{184.0, 380.0, 70.0, 64.0}, "CNS", s.cns.view(), "%", 18.0, 13.0, {s.cns_level}});
   p.compass({262.0, 392.0, 190.0, 46.0}, s, 14.0);
 }
 
@@ -168,7 +173,7 @@ void draw_corner(Painter& p, const Shown& s) {
           17.0,
           12.0,
           tone_of(s, Alarm::kOxygen)});
-  p.cell({{328.0, 190.0, 66.0, 50.0}, "CNS", s.cns.view(), "%", 17.0, 12.0});
+  p.cell({{328.0, 190.0, 66.0, 50.0}, "CNS", s.cns.view(), "%", 17.0, 12.0, {s.cns_level}});
   p.line(14.0, 244.0, 386.0, 244.0, 1.5, kFaint);
   draw_jacket_row(p, {10.0, 247.0, 380.0, 50.0}, s, 17.0, 10.0);
   draw_band(p, {8.0, 301.0, 384.0, 50.0}, s, 16.0);

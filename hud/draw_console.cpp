@@ -106,7 +106,7 @@ void draw_diver(Painter& p, const Shown& s) {
           19.0,
           12.0,
           tone_of(s, Alarm::kOxygen)});
-  p.cell({{x + 224.0, 354.0, 72.0, 54.0}, "CNS", s.cns.view(), "%", 19.0, 12.0});
+  p.cell({{x + 224.0, 354.0, 72.0, 54.0}, "CNS", s.cns.view(), "%", 19.0, 12.0, {s.cns_level}});
   title(p, x + 12.0, 436.0, "TISSUES");
   p.text(x + kWide - 12.0, 436.0, 11.0, "line: ambient, top: limit", kLabel, Align::kRight);
   p.tissues({x + 12.0, 446.0, kWide - 24.0, 78.0}, s);

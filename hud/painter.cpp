@@ -15,8 +15,6 @@ std::string_view wind_of(int degrees) {
   return kWinds[(degrees % 360 + 360) % 360 / 45];
 }
 
-}  // namespace
-
 // Where a text is broken into two lines: at the space nearest to its middle, else between two
 // characters there; its end where it is too short.
 std::size_t middle_of(std::string_view utf8) {
@@ -28,6 +26,8 @@ std::size_t middle_of(std::string_view utf8) {
   while (at < utf8.size() && (static_cast<unsigned char>(utf8[at]) & 0xC0) == 0x80) ++at;
   return at > 0 ? at : utf8.size();
 }
+
+}  // namespace
 
 bool any_alarm(const Shown& shown) {
   return std::ranges::any_of(shown.alarms, [](AlarmLevel l) { return l != AlarmLevel::kOff; });

@@ -46,7 +46,7 @@ void show_depths(const DiveData& d, Units units, Shown& out) {
   out.deepest = depth_text(standard(std::max(d.deepest_m, d.depth_m)), units);
   out.in_stops = d.ceiling_m > 0.0;
   out.ceiling = ceiling_text(standard(d.ceiling_m), units);
-  out.stop = stop_text(standard(std::max(d.stop_m, d.ceiling_m)), units);
+  out.stop = stop_text(standard(owed_stop_m(d)), units);
   out.stop_min = minutes_owed_text(d.stop_min);
   out.no_stop = minutes_left_text(d.no_stop_min);
   out.to_surface = minutes_owed_text(d.to_surface_min);
@@ -71,6 +71,9 @@ void show_gas(const DiveData& d, Units units, Shown& out) {
   out.mod = mod_text(d, units);
   out.oxygen = oxygen_text(d.po2_bar);
   out.cns = percent_text(d.cns_percent);
+  out.cns_level = d.cns_percent >= kFullCns_percent   ? AlarmLevel::kDanger
+                  : d.cns_percent >= kMuchCns_percent ? AlarmLevel::kCaution
+                                                      : AlarmLevel::kOff;
 }
 
 void show_compass_and_tissues(const DiveData& d, Shown& out) {
@@ -167,7 +170,10 @@ Shown shown_of(LayoutKind layout, Units units, const DiveData& data, const Alarm
   if (layout == LayoutKind::kMask) out.heading = heading_text(data.heading_rad);
   if (layout == LayoutKind::kConsole) show_operator(data, units, minute, about, out);
   out.alarms = alarms.level;
-  out.advice = advice_of({alarms.level, room_of(data), data.other_gas, data.leaner_gas,
+  const double stop_oxygen_bar =
+      data.gas.oxygen * (data.surface_bar + data.bar_per_m * owed_stop_m(data));
+  const bool too_rich = data.gas_known && stop_oxygen_bar > data.oxygen_limit_bar;
+  out.advice = advice_of({alarms.level, room_of(data), data.other_gas, data.leaner_gas, too_rich,
                           FixedText::of("{} {}", out.stop.view(), unit_names(units).depth)});
   if (data.message_age_s >= 0.0 && data.message_age_s <= kMessage_s) {
     out.message = data.message;
@@ -182,6 +188,11 @@ Shown shown_of(LayoutKind layout, Units units, const DiveData& data, const Alarm
 
 bool flash_at(double seen_s) {
   return std::fmod(std::abs(seen_s), kFlash_s) >= 0.5 * kFlash_s;
+}
+
+double owed_stop_m(const DiveData& d) {
+  constexpr double kStep_m = 3.0;
+  return d.stop_m >= d.ceiling_m ? d.stop_m : kStep_m * std::ceil(d.ceiling_m / kStep_m);
 }
 
 double tissue_bar(const diver::Buehlmann& model, const diver::TissueState& tissues,

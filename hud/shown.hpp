@@ -63,6 +63,7 @@ struct Shown {
   std::uint64_t buttons = 0;
   ShownCondition condition;
   std::array<AlarmLevel, kAlarms> alarms{};
+  AlarmLevel cns_level = AlarmLevel::kOff;  // the colour of its number; it has no band
   Advice advice;
   // In the band while no alarm is on; on the console beside it. Empty: none.
   LongText message;
@@ -79,6 +80,9 @@ struct Shown {
 
   bool operator==(const Shown&) const = default;
 };
+
+// The oxygen clock: where its number is a caution, and where a danger.
+inline constexpr double kMuchCns_percent = 80.0, kFullCns_percent = 100.0;
 
 // So long a message stays, by the scene's time.
 inline constexpr double kMessage_s = 15.0;

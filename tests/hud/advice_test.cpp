@@ -178,5 +178,46 @@ TEST(HudAdvice, FeetWhereUnitsAreImperial) {
             "GO DOWN TO 31 ft");  // 29.67, and half a foot
 }
 
+// At 6 m oxygen has 1.6 bar, at the stop of 9 m 1.9: below it is no place for that gas.
+TEST(HudAdvice, AboveACeilingAGasThatIsTooRichAtTheStopIsChangedFirst) {
+  DiveData d = stops_dive();
+  d.depth_m = 6.0, d.ceiling_m = 8.9, d.stop_m = 9.0, d.ceiling_violated = true;
+  const auto act = [&](double oxygen, bool leaner) {
+    d.gas = {oxygen, 0.0}, d.oxygen_limit_bar = kDecoOxygen_bar, d.po2_bar = 1.62 * oxygen;
+    d.leaner_gas = leaner;
+    const AlarmState alarms = step_alarms({}, d, d.time_s);
+    EXPECT_FALSE(alarms.on(Alarm::kOxygen));
+    return std::string(
+        shown_of(LayoutKind::kMask, Units::kMetric, d, alarms, {}, {}, d.time_s).advice.act.view());
+  };
+  EXPECT_EQ(act(1.0, true), "CHANGE GAS, GO DOWN");
+  EXPECT_EQ(act(1.0, false), "BUDDY'S GAS, GO DOWN");
+  EXPECT_EQ(act(0.5, true), "GO DOWN TO 9.1 m");
+}
+
+// The computer's stop clears on the way up: where the ceiling still lies deeper the step of 3 m at
+// or below it is owed.
+TEST(HudAdvice, AStopIsAStepOfThreeMetres) {
+  DiveData d = stops_dive();
+  d.stop_m = 12.0, d.ceiling_m = 12.64;
+  EXPECT_EQ(owed_stop_m(d), 15.0);
+  d.ceiling_m = 12.0;
+  EXPECT_EQ(owed_stop_m(d), 12.0);
+  d.ceiling_m = 0.0, d.stop_m = 0.0;
+  EXPECT_EQ(owed_stop_m(d), 0.0);
+}
+
+TEST(HudAdvice, TheOxygenClockColoursItsNumber) {
+  DiveData d = calm_dive();
+  const auto level = [&](double percent) {
+    d.cns_percent = percent;
+    return shown_of(LayoutKind::kWrist, Units::kMetric, d, {}, {}, {}, d.time_s).cns_level;
+  };
+  EXPECT_EQ(level(79.9), AlarmLevel::kOff);
+  EXPECT_EQ(level(80.0), AlarmLevel::kCaution);
+  EXPECT_EQ(level(812.0), AlarmLevel::kDanger);
+  EXPECT_EQ(level(kUnknown), AlarmLevel::kOff);
+}
+
 }  // namespace
 }  // namespace neritic::hud

@@ -79,6 +79,19 @@ std::string errors_line(const char* name, const RateErrors& e) {
       name, e.answered, e.refused, e.median_bpm, e.mean_bpm, 100.0 * e.within_2, 100.0 * e.doubled);
 }
 
+// The rate, where it is known.
+std::string rate_line(const std::vector<diver::BreathState>& states) {
+  std::vector<double> rates;
+  for (const diver::BreathState& s : states)
+    if (s.estimate.breathing) rates.push_back(s.estimate.rate_bpm);
+  if (rates.empty())
+    return fmt::format("# no rate: none of {} estimates knows one\n", states.size());
+  std::ranges::sort(rates);
+  return fmt::format("# {:.1f} breaths/min ({:.1f} to {:.1f}), known in {} of {} estimates\n",
+                     rates[rates.size() / 2], rates.front(), rates.back(), rates.size(),
+                     states.size());
+}
+
 }  // namespace
 
 RateErrors rate_errors(const std::vector<diver::BreathState>& states, double true_bpm,
@@ -164,7 +177,8 @@ ReportText report_text(const PhysioFlags& flags, const BreathReport& r) {
   std::string out =
       fmt::format("# {}: {:g} Hz, {:.1f} s; {} over {:g} s, an estimate every {:g} s\n", flags.file,
                   r.sound.rate_hz, r.sound.seconds(), diver::name_of(r.settings.estimator),
-                  r.settings.window_s, r.settings.block_s);
+                  r.settings.window_s, r.settings.block_s) +
+      rate_line(r.states);
   if (r.true_bpm) {
     out += fmt::format("# true rate: {:g} breaths/min\n", *r.true_bpm);
     out += errors_line(

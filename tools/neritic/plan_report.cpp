@@ -130,10 +130,10 @@ DeepestMoment deepest_of(const PlanReport& r) {
 std::string depth_text(const PlanReport& r) {
   const auto [depth, mix] = deepest_of(r);
   const diver::DecoEnvironment& where = r.request.conventions.environment;
-  const double air = diver::air_depth_m(mix, depth, where);
+  const double air = std::max(diver::air_depth_m(mix, depth, where), 0.0);
   std::string out = fmt::format("at {:g} m: gas density {:.1f} g/L, END {:.1f} m", depth,
                                 diver::gas_density_g_l(mix, where.pressure_bar(depth)),
-                                diver::narcotic_depth_m(mix, depth, where));
+                                std::max(diver::narcotic_depth_m(mix, depth, where), 0.0));
   if (mix.helium > 0.0) return out + fmt::format(" ({:.1f} by nitrogen alone)\n", air);
   return mix == diver::kAir ? out + "\n" : out + fmt::format(", EAD {:.1f} m\n", air);
 }
@@ -193,8 +193,9 @@ std::string sums_text(const PlanReport& r) {
           ? fmt::format(" (of earlier dives {:.0f} %, {:.0f})", before.cns_percent, before.otu)
           : "",
       plan.max_po2_bar,
-      100.0 * diver::gradient_share(r.request.conventions.model(), plan.surfacing.tissues,
-                                    r.request.conventions.environment.surface_bar));
+      100.0 *
+          std::max(0.0, diver::gradient_share(r.request.conventions.model(), plan.surfacing.tissues,
+                                              r.request.conventions.environment.surface_bar)));
   out += depth_text(r);
   for (const diver::PlanGas& gas : r.request.gases) {
     const bool deco = gas.role == diver::GasRole::kDeco;

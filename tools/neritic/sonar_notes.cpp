@@ -149,7 +149,7 @@ std::optional<std::string> smoothing_note(const sonar::SmoothedDepth& smoothed, 
   return fmt::format(
       "the depth is noisy by about {:.2g} mm, {:.2g} range bins, and the published gather counts a "
       "cell once in each bin that its pixels lie in: depths come from planes fitted to {} x {} "
-      "pixels, noisy by about {:.2g} mm (--gather plane needs no smoothing)",
+      "pixels, noisy by about {:.2g} mm",
       1e3 * smoothed.noise_m, smoothed.noise_m / bin_m, smoothed.width_px, smoothed.width_px,
       1e3 * smoothed.left_m);
 }
