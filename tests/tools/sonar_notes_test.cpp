@@ -154,7 +154,7 @@ TEST(SonarNotes, NoiseThatThePublishedGatherWouldCountTwiceIsTold) {
       tools::smoothing_note({0.02, 0.0022, 9}, 0.01).value_or(""),
       HasSubstr("noisy by about 20 mm, 2 range bins, and the published gather counts a cell "
                 "once in each bin that its pixels lie in: depths come from planes fitted to "
-                "9 x 9 pixels, noisy by about 2.2 mm (--gather plane"));
+                "9 x 9 pixels, noisy by about 2.2 mm"));
 }
 
 sonar::MapFile depth_map(std::uint32_t channels, std::vector<double> values,

@@ -89,7 +89,7 @@ Result<std::string> show(const PhysioFlags& flags, const Report& report, bool pl
     std::fflush(stdout);
     return std::string();
   }
-  fmt::print("{}", text.summary);
+  if (!played) fmt::print("{}", text.summary);
   return where;
 }
 

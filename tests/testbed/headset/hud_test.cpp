@@ -88,22 +88,22 @@ const std::vector<hud::LayoutKind> kAll{hud::LayoutKind::kWrist, hud::LayoutKind
 TEST_F(HeadsetHud, StereoWithHeadWristAndWorldLockedLayersIsAsItsGolden) {
   fakes::FakeHeadset fake(
       fmt::format("{}size 640 600\nfov -45 38 36 -44\nperiod 0.05\n"
-                  "out {}\nout_frames 12\n",
+                  "out {}\nout_frames 32\n",
                   kWearer, folder()));
   wear(kAll);
-  NERITIC_ASSERT_STATUS(dive(scene_, 14));
-  expect_golden("stereo.png", sheet(12, 2));
+  NERITIC_ASSERT_STATUS(dive(scene_, 34));
+  expect_golden("stereo.png", sheet(32, 2));
 }
 
 TEST_F(HeadsetHud, FourViewsAreAsTheirGolden) {
   fakes::FakeHeadset fake(
       fmt::format("{}views 4\nsize 320 300\nfocus_size 480 480\nfocus_deg 20\n"
-                  "fov -45 38 36 -44\nperiod 0.05\nout {}\nout_frames 8\n",
+                  "fov -45 38 36 -44\nperiod 0.05\nout {}\nout_frames 28\n",
                   kWearer, folder()));
   // Of the head, the wrist and the world.
   wear({hud::LayoutKind::kWrist, hud::LayoutKind::kCorner, hud::LayoutKind::kConsole});
-  NERITIC_ASSERT_STATUS(dive(scene_, 10));
-  expect_golden("four_views.png", sheet(8, 4));
+  NERITIC_ASSERT_STATUS(dive(scene_, 30));
+  expect_golden("four_views.png", sheet(28, 4));
 }
 
 // How alike a panel's own picture and its place in a view are: 1 the same up to brightness.
