@@ -9,6 +9,7 @@
 #include "rov/frames.hpp"
 #include "testbed/simulation/place_outlook.hpp"
 #include "testbed/simulation/swim_outlook.hpp"
+#include "testbed/simulation/thrust_outlook.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -19,111 +20,6 @@ constexpr double kLeastSpeed_m_s = 0.01;
 constexpr double kLeastWay_m_s = 0.05;
 // Headings at which a vehicle may face a current.
 constexpr int kHeadings = 72;
-
-// Surge, sway, heave, yaw: what a mission controls. Roll and pitch right themselves.
-struct Axis {
-  std::size_t axis;
-  const char *name, *words;
-};
-constexpr Axis kAxes[] = {{0, "surge", "forward or back (surge)"},
-                          {1, "sway", "to the side (sway)"},
-                          {2, "heave", "up or down (heave)"},
-                          {5, "yaw", "round (yaw)"}};
-// Along these axes a push counts as free of others up to this share of it.
-constexpr double kFree = 0.05;
-
-// How large the push along controlled axes is, moments over the longest arm of the thrusters.
-double size_n(const rov::Allocator& allocator, const rov::Vec6& wrench) {
-  double arm_m = 1e-3, sum = 0.0;
-  for (std::size_t k = 0; k < allocator.count(); ++k) {
-    std::array<double, rov::kMaxThrusters> one{};
-    one[k] = 1.0;
-    arm_m = std::max(arm_m, std::abs(allocator.wrench_of(one)[5]));
-  }
-  for (const Axis& a : kAxes) {
-    const double part = a.axis == 5 ? wrench[5] / arm_m : wrench[a.axis];
-    sum += part * part;
-  }
-  return std::sqrt(sum);
-}
-
-// The force along a direction of the body's axes that control gets from the thrusters at most, and
-// what that pushes along other controlled axes, as a share of it.
-struct Push {
-  double along_n = 0.0, aside = 0.0;
-};
-Push push_along(const PhysicsVehicle& vehicle, const rov::Vec6& direction) {
-  const rov::Allocator& allocator = vehicle.kind.allocator;
-  const auto forces = allocator.allocate(1e6 * direction, vehicle.file.gains.saturation).force_n;
-  const rov::Vec6 wrench = allocator.wrench_of(forces);
-  Push out{std::max(0.0, dot(wrench, direction)), 0.0};
-  const rov::Vec6 along = out.along_n * direction;
-  const double aside_n = size_n(allocator, wrench - along);
-  if (aside_n > 0.0) out.aside = aside_n / std::max(size_n(allocator, along), 1e-9);
-  return out;
-}
-
-double most_along(const PhysicsVehicle& vehicle, const rov::Vec6& direction) {
-  return push_along(vehicle, direction).along_n;
-}
-
-rov::Vec6 axis_of(std::size_t axis, double sign) {
-  rov::Vec6 out;
-  out[axis] = sign;
-  return out;
-}
-
-// Axes without a push, and those along which it pushes only together with others.
-void add_axes(const PhysicsVehicle& vehicle, std::vector<std::string>& lines) {
-  std::vector<std::string_view> coupled;
-  for (const Axis& a : kAxes) {
-    const Push ahead = push_along(vehicle, axis_of(a.axis, 1.0)),
-               back = push_along(vehicle, axis_of(a.axis, -1.0));
-    if (std::min(ahead.along_n, back.along_n) < 1e-3)
-      lines.push_back(fmt::format("{}: its thrusters push 0 {} {}: that axis is not controlled",
-                                  vehicle.name, a.axis == 5 ? "N m" : "N", a.words));
-    else if (std::max(ahead.aside, back.aside) >= kFree)
-      coupled.push_back(a.name);
-  }
-  if (!coupled.empty())
-    lines.push_back(
-        fmt::format("{}: its thrusters push along {} only together, so that none of these axes is "
-                    "controlled by itself: it may not hold its heading or its line",
-                    vehicle.name, fmt::join(coupled, " and ")));
-}
-
-// A weight beside the lift that the thrusters do not balance, so that the vehicle tilts.
-void add_trim(const PhysicsVehicle& vehicle, std::vector<std::string>& lines) {
-  constexpr double kTilted_rad = radians(10.0);
-  const rov::Vehicle& v = vehicle.vehicle;
-  // N m for each axis: ahead, to starboard, down.
-  const Vec3 off = v.weight_n * v.gravity_centre_m - v.buoyancy_n * v.buoyancy_centre_m;
-  const auto held = [&](std::size_t axis) {
-    return std::min(most_along(vehicle, axis_of(axis, 1.0)),
-                    most_along(vehicle, axis_of(axis, -1.0)));
-  };
-  const auto add = [&](double moment_n_m, std::size_t axis, const char* words) {
-    const double tilt_rad = std::atan2(std::abs(moment_n_m), off.z), held_n_m = held(axis);
-    if (std::abs(moment_n_m) <= held_n_m || tilt_rad < kTilted_rad) return;
-    lines.push_back(
-        fmt::format("{}: its weight pulls the {} down with {:.3g} N m, its thrusters hold {:.3g}: "
-                    "left alone it tilts by {:.0f} degrees",
-                    vehicle.name, words, std::abs(moment_n_m), held_n_m, degrees(tilt_rad)));
-  };
-  add(off.x, 4, off.x > 0.0 ? "nose" : "stern");
-  add(off.y, 3, off.y > 0.0 ? "starboard side" : "port side");
-}
-
-void add_buoyancy(const PhysicsVehicle& vehicle, std::vector<std::string>& lines) {
-  const double up_n = vehicle.vehicle.buoyancy_n - vehicle.vehicle.weight_n;
-  const double most_n = most_along(vehicle, axis_of(2, up_n > 0.0 ? 1.0 : -1.0));
-  if (std::abs(up_n) <= most_n) return;
-  lines.push_back(
-      fmt::format("{}: {:.4g} N too {}: its thrusters push {} with {:.3g} N at most, so "
-                  "it does not hold its depth",
-                  vehicle.name, std::abs(up_n), up_n > 0.0 ? "buoyant" : "heavy",
-                  up_n > 0.0 ? "down" : "up", most_n));
-}
 
 // The drag in water that flows so past a vehicle at rest, body axes.
 Vec3 drag_n(const rov::Vehicle& vehicle, const Vec3& flow_m_s) {
@@ -138,18 +34,47 @@ Vec3 drag_n(const rov::Vehicle& vehicle, const Vec3& flow_m_s) {
 struct Hold {
   double share = 1e300, drag_n = 0.0, thrust_n = 0.0;
 };
+// The direction against the drag at a heading, body axes; 0 in water at rest.
+rov::Vec6 against_drag(const PhysicsVehicle& vehicle, const Vec3& flow_ned_m_s,
+                       double heading_rad) {
+  const Quat attitude = rov::heading_attitude(heading_rad);
+  return rov::vec6(-rov::along(drag_n(vehicle.vehicle, glm::conjugate(attitude) * flow_ned_m_s)),
+                   Vec3(0.0));
+}
 Hold hold_at(const PhysicsVehicle& vehicle, const Vec3& flow_ned_m_s, double heading_rad) {
   const Quat attitude = rov::heading_attitude(heading_rad);
-  const Vec3 drag = drag_n(vehicle.vehicle, glm::conjugate(attitude) * flow_ned_m_s);
-  const double size_n = glm::length(drag);
+  const double size_n =
+      glm::length(drag_n(vehicle.vehicle, glm::conjugate(attitude) * flow_ned_m_s));
   if (!(size_n > 0.0)) return {0.0, 0.0, 0.0};
-  const double most_n = most_along(vehicle, rov::vec6(drag / -size_n, Vec3(0.0)));
+  const double most_n = most_along(vehicle, against_drag(vehicle, flow_ned_m_s, heading_rad));
   return {size_n / std::max(most_n, 1e-9), size_n, most_n};
 }
+
+// The heading near this one at which least of the push against the drag goes astray, by golden
+// section: thrusters that push along one line alone hold it nowhere else.
+double straightest(const PhysicsVehicle& vehicle, const Vec3& flow_ned_m_s, double heading_rad) {
+  constexpr double kGolden = 0.6180339887498949;
+  const auto astray = [&](double at_rad) {
+    return push_along(vehicle, against_drag(vehicle, flow_ned_m_s, at_rad)).astray;
+  };
+  double from = heading_rad - 2.0 * kPi / kHeadings, to = heading_rad + 2.0 * kPi / kHeadings;
+  for (int i = 0; i < 40; ++i) {
+    const double inner = to - kGolden * (to - from), outer = from + kGolden * (to - from);
+    (astray(inner) < astray(outer) ? to : from) = astray(inner) < astray(outer) ? outer : inner;
+  }
+  return 0.5 * (from + to);
+}
+
 Hold easiest_hold(const PhysicsVehicle& vehicle, const Vec3& flow_ned_m_s) {
   Hold best;
   for (int i = 0; i < kHeadings; ++i) {
     const Hold hold = hold_at(vehicle, flow_ned_m_s, 2.0 * kPi * i / kHeadings);
+    if (hold.share < best.share) best = hold;
+  }
+  if (best.thrust_n > 0.0 || best.drag_n == 0.0) return best;
+  for (int i = 0; i < kHeadings; ++i) {
+    const Hold hold = hold_at(vehicle, flow_ned_m_s,
+                              straightest(vehicle, flow_ned_m_s, 2.0 * kPi * i / kHeadings));
     if (hold.share < best.share) best = hold;
   }
   return best;
@@ -254,9 +179,11 @@ void add_slow(const PhysicsWorld& world, const PhysicsVehicle& vehicle,
     worst = hard.hold.share;
     line = fmt::format(
         "{}: {:.3g} m/s over ground {} is {:.3g} m/s through the water, whose drag is {:.4g} N; "
-        "its thrusters push with {:.3g} N: it is slower there",
+        "its thrusters push with {:.3g} N{}",
         vehicle.name, speed_m_s, where_of(vehicle, i), glm::length(hard.flow_m_s), hard.hold.drag_n,
-        hard.hold.thrust_n);
+        hard.hold.thrust_n,
+        hard.hold.thrust_n > 0.0 ? ": it is slower there"
+                                 : " with the other axes at rest: it may not arrive");
   }
   if (!line.empty()) lines.push_back(std::move(line));
 }

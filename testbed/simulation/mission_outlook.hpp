@@ -11,15 +11,17 @@
 namespace neritic::testbed {
 
 // A line each, with numbers, for what a vehicle with a mission cannot hold at its start: an axis
-// that its thrusters do not push along (failed ones left out), or only together with others; weight
-// or buoyancy beyond their vertical thrust, drag in the current of its start and waypoints beyond
-// their thrust at any heading, or at the heading of a leg, of an orbit, of its station; a speed
-// over ground that the current takes beyond it, a speed through the water that makes no way; a
-// battery whose electronics alone empty it before the way is done; a trim moment beyond the
-// thrusters'; a waypoint above the surface, below the bed or in something solid; a DVL that never
-// hears a bottom. Thrust is what its own saturation gives (rov/allocation.hpp). For divers who swim
-// by plan: a speed over ground faster than legs sustain, or through the water without way; a way
-// that is steeper than divers rise and sink.
+// that its thrusters do not push along (failed ones left out), axes that they push only together,
+// such as surge with sway and yaw, or surge with a pitch that tilts it; weight or buoyancy beyond
+// their vertical thrust, drag in the current of its start and waypoints beyond their thrust at any
+// heading, or at the heading of a leg, of an orbit, of its station; a speed over ground that the
+// current takes beyond it, a speed through the water that makes no way; a battery whose electronics
+// alone empty it before the way is done; a trim moment beyond the thrusters'; a waypoint above the
+// surface, below the bed or in something solid; a DVL that never hears a bottom. Thrust is what its
+// own saturation gives (rov/allocation.hpp) with all other axes at rest; roll and pitch too, if the
+// thrusters control them. For divers who swim by plan: a speed over ground
+// faster than legs sustain, or through the water without way; a way that is steeper than divers
+// rise and sink.
 std::vector<std::string> cannot_hold(const PhysicsWorld& world);
 
 // A line each for the missions of vehicles and swim plans of divers that are not finished after

@@ -239,26 +239,6 @@ TEST(MissionSpeed, TheOutlookNamesWhatADiverCannotSwim) {
             "accepted: more, up to the 0.65 m/s that legs reach with fins of 0.4 x 0.2 m");
 }
 
-// One vectored thruster of four cannot push ahead, aside and round each for itself, and two that
-// are left of one side cannot tell sway from yaw. With one or none failed nothing is coupled.
-TEST(MissionOutlook, NamesTheAxesAlongWhichItsThrustersPushOnlyTogether) {
-  const auto coupled = [](const std::string& failed) {
-    const std::string line = told(
-        kStillWater + rov_text("position_m = [0, -10, 0]\n" + failed +
-                               "mission = { waypoints = [ { position_m = [4, -10, 0] } ] }\n"));
-    const std::size_t from = line.find("push along "), to = line.find(" only together");
-    return from == std::string::npos ? std::string() : line.substr(from + 11, to - from - 11);
-  };
-  EXPECT_EQ(coupled(""), "");
-  EXPECT_EQ(coupled("failed_thrusters = [1]\n"), "");
-  EXPECT_EQ(coupled("failed_thrusters = [1, 2, 3]\n"), "surge and sway and yaw");
-  EXPECT_EQ(coupled("failed_thrusters = [1, 2]\n"), "sway and yaw");
-  EXPECT_EQ(coupled("failed_thrusters = [1, 3]\n"), "surge and yaw");
-  EXPECT_EQ(coupled("failed_thrusters = [1, 4]\n"), "surge and sway");
-  // Heave of one thruster also rolls and pitches, which right themselves.
-  EXPECT_EQ(coupled("failed_thrusters = [5, 6, 7]\n"), "");
-}
-
 // Fins reach more than bare feet, and both what a run of them shows.
 TEST(MissionSpeed, TheOutlookNamesASpeedThatTheFeetDoNotReach) {
   const test::ScratchFolder scratch;
