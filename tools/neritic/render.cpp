@@ -314,8 +314,12 @@ std::string summary(const RenderFlags& flags, const scene::Scene& scene, const C
   if (!flags.track_only && !names.empty())
     parts.push_back(fmt::format("frame_0000{} of {}", last, fmt::join(names, ", ")));
   if (wrote_track) parts.push_back("track");
-  if (!flags.track_only && datasets.has(Dataset::kCoco) && !sensors.cameras.empty())
-    parts.push_back("coco.json");
+  const bool labelled = !flags.track_only && !sensors.cameras.empty();
+  const char* const pictures =
+      datasets.has(Dataset::kColor) ? "" : ", for pictures that --only leaves out (add color)";
+  if (labelled && datasets.has(Dataset::kCoco))
+    parts.push_back(std::string("coco.json") + pictures);
+  if (labelled && datasets.has(Dataset::kKitti)) parts.push_back(std::string("kitti") + pictures);
   if (datasets.has(Dataset::kTrajectory)) parts.push_back("trajectory.csv");
   if (flags.sheet) parts.push_back("sheet.png shows all at one glance");
   return fmt::format("{}: {}", flags.out, fmt::join(parts, "; "));

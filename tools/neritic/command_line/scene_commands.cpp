@@ -222,9 +222,11 @@ void add_dive(CLI::App& app, CommandLine& line) {
   command->add_option(
       "--view", flags->view,
       "begins at this view: a camera's name, chase:PARTICIPANT or free (key V changes it)");
-  command->add_flag("--swim", flags->swim,
-                    "in a window: begins in the own view of the first diver, whom the keys swim at "
-                    "once, as after key P; a scene without divers gets one at its first view");
+  command->add_flag(
+      "--swim", flags->swim,
+      "in a window: begins in the view of a camera on the first diver, else behind the "
+      "diver, whom the keys swim at once, as after key P; a scene without divers gets one at its "
+      "first view");
   command->add_option("--task", flags->task,
                       "in a window: what the person is to do, shown in place of the operator's "
                       "panels (F2 shows those); the window's looks are not kept");
