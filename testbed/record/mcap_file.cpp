@@ -17,7 +17,8 @@ namespace {
 // How often the writer looks whether its chunk is old.
 constexpr auto kLook = std::chrono::milliseconds(100);
 
-// Gives recordings that have this name another one. Where that fails, writing says why.
+}  // namespace
+
 void keep_old(const fs::path& path) {
   const auto target = write_target(path);
   if (!target.ok() || target->in_place) return;
@@ -41,8 +42,6 @@ void keep_old(const fs::path& path) {
     return;
   }
 }
-
-}  // namespace
 
 McapFile::McapFile(std::filesystem::path path) : file_(std::move(path)) {
   keep_old(file_.path());

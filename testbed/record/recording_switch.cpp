@@ -1,5 +1,7 @@
 #include "testbed/record/recording_switch.hpp"
 
+#include "testbed/record/mcap_file.hpp"
+
 namespace neritic::testbed {
 namespace {
 
@@ -34,6 +36,7 @@ class RecordingSwitch::Files final : public StepSink {
   static std::vector<std::unique_ptr<RowSink>> rows(const PhysicsWorld& world,
                                                     const std::filesystem::path& base) {
     std::vector<std::unique_ptr<RowSink>> out;
+    keep_old(with(base, ".csv"));
     out.push_back(std::make_unique<CsvLog>(world, with(base, ".csv")));
     return out;
   }

@@ -593,6 +593,16 @@ class Worlds(unittest.TestCase):
     async def all_of(ticks):
         return [one async for one in ticks]
 
+    def test_files_of_a_recordings_name_are_kept(self):
+        with tempfile.TemporaryDirectory() as folder, neritic.open(TALK) as world:
+            for name in ("mine.mcap", "mine.csv"):
+                Path(folder, name).write_text("precious")
+            with world.record(Path(folder, "mine.mcap")):
+                world.tick(24)
+            self.assertEqual(sorted(os.listdir(folder)), ["mine.csv", "mine.mcap", "mine_old1.csv", "mine_old1.mcap"])
+            for name in ("mine_old1.mcap", "mine_old1.csv"):
+                self.assertEqual(Path(folder, name).read_text(), "precious")
+
     def test_a_recording_that_cannot_be_written_is_refused_before_the_trial(self):
         world = neritic.open(MISSION, seed=1)
         with tempfile.TemporaryDirectory() as folder:
