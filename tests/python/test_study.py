@@ -13,15 +13,9 @@ import time
 import unittest
 from types import SimpleNamespace
 
-try:
-    import numpy as np
-except ModuleNotFoundError:
-    sys.exit(77)
+from experiment_tools import TOOLS
 
-HERE = os.path.dirname(os.path.realpath(__file__))
-sys.dont_write_bytecode = True
-TOOLS = os.path.join(HERE, "..", "..", "tools", "experiment")
-sys.path.insert(0, TOOLS)
+import numpy as np
 
 import questionnaires
 import scenario

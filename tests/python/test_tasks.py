@@ -3,21 +3,14 @@ import math
 import os
 import re
 import shutil
-import sys
 import tempfile
 import unittest
 import unittest.mock
 from types import SimpleNamespace
 
-try:
-    import numpy as np
-except ModuleNotFoundError:
-    sys.exit(77)
+import experiment_tools  # noqa: F401
 
-HERE = os.path.dirname(os.path.realpath(__file__))
-sys.dont_write_bytecode = True
-TOOLS = os.path.join(HERE, "..", "..", "tools", "experiment")
-sys.path.insert(0, TOOLS)
+import numpy as np
 
 import scenario
 
