@@ -59,5 +59,8 @@ class GrowingFile {
 
 // The name that a file grows under.
 std::filesystem::path part_of(const std::filesystem::path& path);
+// Gives files that have this name, whole or in part, another one: NAME_old1. Where that fails,
+// writing says why.
+void keep_old(const std::filesystem::path& path);
 
 }  // namespace neritic

@@ -1,47 +1,18 @@
 #include "testbed/record/mcap_file.hpp"
 
-#include <algorithm>
-#include <array>
 #include <chrono>
 
 #include "engine/core/check.hpp"
-#include "engine/core/files.hpp"
-#include "engine/core/log.hpp"
 #include "engine/core/version.hpp"
 #include "engine/recording/mcap_writer.hpp"
 
 namespace neritic::testbed {
-namespace fs = std::filesystem;
 namespace {
 
 // How often the writer looks whether its chunk is old.
 constexpr auto kLook = std::chrono::milliseconds(100);
 
 }  // namespace
-
-void keep_old(const fs::path& path) {
-  const auto target = write_target(path);
-  if (!target.ok() || target->in_place) return;
-  std::error_code none;
-  const std::array<fs::path, 2> there{target->path, part_of(target->path)};
-  if (std::ranges::none_of(there, [&](const fs::path& file) { return fs::exists(file, none); }))
-    return;
-  for (int i = 1;; ++i) {
-    fs::path old = target->path;
-    old.replace_filename(fmt::format("{}_old{}{}", target->path.stem().string(), i,
-                                     target->path.extension().string()));
-    const std::array<fs::path, 2> names{old, part_of(old)};
-    if (std::ranges::any_of(names, [&](const fs::path& file) { return fs::exists(file, none); }))
-      continue;
-    for (std::size_t k = 0; k < there.size(); ++k) {
-      std::error_code error;
-      if (!fs::exists(there[k], none)) continue;
-      fs::rename(there[k], names[k], error);
-      if (!error) log_warn("{} was there; it is {} now", there[k].string(), names[k].string());
-    }
-    return;
-  }
-}
 
 McapFile::McapFile(std::filesystem::path path) : file_(std::move(path)) {
   keep_old(file_.path());

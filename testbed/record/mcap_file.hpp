@@ -17,10 +17,6 @@
 
 namespace neritic::testbed {
 
-// Gives files that have this name, whole or in part, another one: NAME_old1. Where that fails,
-// writing says why.
-void keep_old(const std::filesystem::path& path);
-
 class McapFile final : public recording::McapOut {
  public:
   static constexpr std::size_t kMostWaiting_bytes = std::size_t{64} << 20;

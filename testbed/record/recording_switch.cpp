@@ -1,6 +1,6 @@
 #include "testbed/record/recording_switch.hpp"
 
-#include "testbed/record/mcap_file.hpp"
+#include "engine/core/growing_file.hpp"
 
 namespace neritic::testbed {
 namespace {

@@ -4,7 +4,6 @@
 // fourth. A vehicle's step has a part between any two instants of its control and its sensors; all
 // parts but the last end before pairs meet.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <thread>
@@ -349,31 +348,6 @@ void PhysicsWorld::begin_part(const StepCall& call, std::size_t i) const {
       acting_on(vehicle, call.inputs.vehicles()[i], state, from_s, length_s(call.time, own.part));
   if (!own.near.empty()) add_near_bounds(i, state.body, from_s, own);
   own.free = free_step(part_step(call, i));
-}
-
-// The added mass of a vehicle where it is, for the part of a step to come.
-void PhysicsWorld::add_near_bounds(std::size_t i, const rov::State& state, double time_s,
-                                   VehicleScratch& own) const {
-  const PhysicsVehicle& vehicle = vehicles_[i];
-  const double radius_m = vehicle.near_radius_m, reach_m = rov::kNearBounds * radius_m;
-  const Vec3 at_ned_m = state.position_ned_m + state.attitude * vehicle.vehicle.buoyancy_centre_m;
-  std::array<rov::WaterBound, 2> bounds{};
-  std::size_t count = 0;
-  const double deep_m = at_ned_m.z + water_ned(at_ned_m, time_s).head_m;
-  if (deep_m < reach_m) bounds[count++] = {deep_m, Vec3(0.0, 0.0, 1.0), true};
-  // The plane of the bottom under it: on a slope that is nearer than the ray is long.
-  const auto bottom =
-      solid_.cast(rov::world_from_ned(at_ned_m), Vec3(0.0, -1.0, 0.0), 2.0 * reach_m);
-  if (bottom) {
-    const Vec3 normal_ned = rov::ned_from_world(bottom->normal);
-    bounds[count++] = {bottom->distance_m * -normal_ned.z, normal_ned, false};
-  }
-  const rov::Vec6 through_water =
-      rov::through_water(state.attitude, state.velocity, own.acting.current_ned_m_s);
-  own.acting.wrench =
-      own.acting.wrench + rov::near_added_mass(vehicle.vehicle, radius_m,
-                                               std::span(bounds).first(count), state.attitude,
-                                               through_water, own.near.front());
 }
 
 void PhysicsWorld::begin_human(const StepCall& call, std::size_t k) const {

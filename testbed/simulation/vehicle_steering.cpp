@@ -1,6 +1,7 @@
 // A vehicle in a step: what it knows of its motion (by its own sensors, or its true state), its
 // authorities, thruster commands and the water around it (physics_world.hpp).
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "rov/frames.hpp"
@@ -183,6 +184,31 @@ rov::Inputs PhysicsWorld::acting_on(const PhysicsVehicle& vehicle, const Vehicle
   }
   if (vehicle.wash) add_ground_effect(vehicle, rays(), state.body, acting);
   return acting;
+}
+
+// The added mass of a vehicle where it is, for the part of a step to come.
+void PhysicsWorld::add_near_bounds(std::size_t i, const rov::State& state, double time_s,
+                                   VehicleScratch& own) const {
+  const PhysicsVehicle& vehicle = vehicles_[i];
+  const double radius_m = vehicle.near_radius_m, reach_m = rov::kNearBounds * radius_m;
+  const Vec3 at_ned_m = state.position_ned_m + state.attitude * vehicle.vehicle.buoyancy_centre_m;
+  std::array<rov::WaterBound, 2> bounds{};
+  std::size_t count = 0;
+  const double deep_m = at_ned_m.z + water_ned(at_ned_m, time_s).head_m;
+  if (deep_m < reach_m) bounds[count++] = {deep_m, Vec3(0.0, 0.0, 1.0), true};
+  // The plane of the bottom under it: on a slope that is nearer than the ray is long.
+  const auto bottom =
+      solid_.cast(rov::world_from_ned(at_ned_m), Vec3(0.0, -1.0, 0.0), 2.0 * reach_m);
+  if (bottom) {
+    const Vec3 normal_ned = rov::ned_from_world(bottom->normal);
+    bounds[count++] = {bottom->distance_m * -normal_ned.z, normal_ned, false};
+  }
+  const rov::Vec6 through_water =
+      rov::through_water(state.attitude, state.velocity, own.acting.current_ned_m_s);
+  own.acting.wrench =
+      own.acting.wrench + rov::near_added_mass(vehicle.vehicle, radius_m,
+                                               std::span(bounds).first(count), state.attitude,
+                                               through_water, own.near.front());
 }
 
 Result<std::optional<rov::NavigationModel>> choose_navigation(const scene::Scene& scene,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/core/check.hpp"
 #include "engine/xr/compositor.hpp"
 
 namespace neritic::xr {
@@ -86,21 +85,26 @@ Result<DisplayFrame> MirroredDisplay::begin_frame(const Pose& world_from_stage) 
   if (!worn_) return window;
   if (!in_window_) return frame;
   next_ns_ = now_ns() + kMirrorPeriod_ns;
-  size_ = window.groups.front();
-  track(frame, world_from_stage);
+  mirror_ = window.groups.front();
+  show_middle(frame);
   return frame;
 }
 
 void MirroredDisplay::track(DisplayFrame& frame, const Pose& world_from_stage) {
   if (!worn_) return;
   headset_.track(frame, world_from_stage);
-  if (!in_window_) return;
+  if (in_window_) show_middle(frame);
+}
+
+// The window shows the middle of the first view, by where the head is.
+void MirroredDisplay::show_middle(DisplayFrame& frame) {
   View view = frame.groups.front().views.front();
   whole_ = view.tangents;
-  view.tangents = mirrored_part(view.tangents, static_cast<double>(size_.width) / size_.height);
+  view.tangents = mirrored_part(whole_, static_cast<double>(mirror_.width) / mirror_.height);
   view.hidden.clear();
   window_->show(view);
-  frame.mirror = ViewGroup{size_.width, size_.height, {view}};
+  mirror_.views = {view};
+  frame.mirror = mirror_;
 }
 
 Result<ShownPicture> MirroredDisplay::declare(graph::FrameGraph& graph, const Pose& world_from_head,
@@ -118,10 +122,8 @@ Result<ShownPicture> MirroredDisplay::declare(graph::FrameGraph& graph, const Po
     in_window_ = false;
     return shown;
   }
-  const FrustumTangents part =
-      mirrored_part(whole_, static_cast<double>(size_.width) / size_.height);
-  beside.insert(beside.begin(),
-                ProjectionLayer{.group = 0, .color = cut(graph, first->color, whole_, part)});
+  const ImageHandle middle = cut(graph, first->color, whole_, mirror_.views.front().tangents);
+  beside.insert(beside.begin(), ProjectionLayer{.group = 0, .color = middle});
   return window_->declare(graph, world_from_head, beside);
 }
 

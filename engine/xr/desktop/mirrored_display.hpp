@@ -36,12 +36,13 @@ class MirroredDisplay final : public Display {
   ActionValues take_mirror_actions(const InputClaims& claims) override;
 
  private:
+  void show_middle(DisplayFrame& frame);
   Display& headset_;
   std::unique_ptr<WindowDisplay> window_;
   bool worn_ = false;       // the headset shows this frame
   bool in_window_ = false;  // the window does
   TimeNs next_ns_ = 0;      // of the window, while the headset is worn
-  ViewGroup size_;          // the window's, in this frame
+  ViewGroup mirror_;        // the window's, in this frame
   FrustumTangents whole_;   // of the first view
 };
 
