@@ -22,7 +22,7 @@ Tone depth_tone(const Shown& shown) {
   return tone_of(shown, Alarm::kCeiling);
 }
 
-// What must not be missed comes before what somebody says.
+// An alarm, which must not be missed, takes the place of a message.
 void draw_band(Painter& p, const Box& box, const Shown& shown, double size) {
   if (any_alarm(shown))
     p.alarm_band(box, shown, size);

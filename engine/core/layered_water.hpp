@@ -15,9 +15,9 @@ class LayeredWater {
 
   const WaterColumn& column() const { return column_; }
   double density_kg_m3(double depth_m) const { return column_.density_kg_m3(depth_m); }
-  // Of the water above a square metre at that depth, kg/m^2: the integral of density_kg_m3 from the
-  // surface down, to 1e-9 of it. 0 above the surface. Times the acceleration of gravity it is the
-  // pressure over that of the air.
+  // The mass of the water above a square metre at that depth, kg/m^2: the integral of density_kg_m3
+  // from the surface down, to 1e-9 of it. 0 above the surface. Times the acceleration of gravity it
+  // is the pressure over that of the air.
   double mass_above_kg_m2(double depth_m) const;
   // The mean of 1 / sound_speed_m_s between two depths, s/m: times the length of a straight path
   // between them it is the travel time of sound along that path. Rays bend, which saves less than

@@ -11,7 +11,7 @@ namespace neritic::net {
 namespace {
 
 constexpr std::string_view kSuitMagic = "MXTP";
-// Of an item on the wire, where all items of the type are of one size.
+// Sizes of an item on the wire, for types whose items all have one size.
 constexpr std::size_t kEulerBytes = 28, kPoseBytes = 32, kJointBytes = 20, kLinearBytes = 40,
                       kAngularBytes = 44;
 

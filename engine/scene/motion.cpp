@@ -40,7 +40,7 @@ Motion local_motion(const Mount& mount, double time_s) {
           angular_velocity_at(*mount.track, time_s)};
 }
 
-// What carries another thing; model: needed where that hangs on a joint of it.
+// The carrier of a thing; model: needed if the thing hangs on one of its joints.
 struct Carrier {
   const Mount* mount;
   const Model* model;

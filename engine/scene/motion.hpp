@@ -91,7 +91,7 @@ class MotionSource {
   Pose world_from(const Mount& mount, double time_s) const { return at(mount, time_s).motion.pose; }
   MotionAt at(const Mount& mount, double time_s) const;
   Pose world_from_object(std::size_t object, double time_s) const;
-  // Of a node of the object's model; joint -1: of the object.
+  // The pose of a node of the object's model; joint -1: of the object.
   Pose world_from_joint(std::size_t object, int joint, double time_s) const;
   // A point of a joint's frame, or of the object's; also long ago, if the simulation follows it.
   FollowedPlace place_of(std::size_t object, int joint, const Vec3& position_m,

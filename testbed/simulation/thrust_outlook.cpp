@@ -54,7 +54,7 @@ std::vector<std::size_t> coupled_with(const std::array<rov::Vec6, 6>& reached, s
   return out;
 }
 
-// Of axes of which one only is more than a tilt: what the tilt does.
+// Adds a line about the tilt that a push brings, where it comes with roll or pitch alone.
 void add_tilting_push(const PhysicsVehicle& vehicle, std::size_t axis,
                       std::span<const std::size_t> coupled, std::vector<std::string>& lines) {
   constexpr double kTilted = 0.17364817766693033;  // the sine of 10 degrees

@@ -1,6 +1,7 @@
-// What a vehicle's thrusters hold: each axis by itself or only with others, weight and buoyancy.
-// Failed thrusters are left out; thrust is what the control's own saturation gives
-// (rov/allocation.hpp). Body axes forward, starboard, down. Pure functions; any thread.
+// The forces that a vehicle's thrusters hold: along each axis by itself or only with others,
+// against weight and buoyancy. Failed thrusters are left out; thrust is what the control's own
+// saturation gives (rov/allocation.hpp). Body axes forward, starboard, down. Pure functions; any
+// thread.
 #pragma once
 
 #include <string>
@@ -18,7 +19,7 @@ struct Push {
   double astray = 0.0;  // a unit of it
 };
 Push push_along(const PhysicsVehicle& vehicle, const rov::Vec6& direction);
-// What it gives along a direction with the other axes at rest: 0 where it cannot.
+// The push along a direction with the other axes at rest; 0 where there is none.
 double most_along(const PhysicsVehicle& vehicle, const rov::Vec6& direction);
 rov::Vec6 axis_of(std::size_t axis, double sign);
 

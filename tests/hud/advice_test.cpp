@@ -1,4 +1,4 @@
-// What a diver is told to do, in every combination of alarms, gases and places to a ceiling: read
+// The advice to a diver, in every combination of alarms, gases and places to a ceiling: read
 // as the diver would read it, by rules that know nothing of how the words are chosen.
 #include <gtest/gtest.h>
 

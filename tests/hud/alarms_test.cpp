@@ -114,9 +114,8 @@ TEST(HudAlarms, WhatIsUnknownNeitherBeginsNorEndsAnAlarm) {
   }
 }
 
-// Of a Hud while the scene's time goes from scene_from_s on at a speed: when the alarm was on, in
-// the viewer's seconds from the start, and how often the picture went over to a danger's other
-// colours.
+// A Hud's alarm while the scene's time goes from scene_from_s on at a speed: when it was on, in the
+// viewer's seconds from the start, and how often the picture went over to a danger's other colours.
 struct Watched {
   double on_s = 0.0;
   int flashes = 0;

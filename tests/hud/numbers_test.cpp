@@ -43,7 +43,7 @@ TEST(HudNumbers, EachIsRoundedToTheSafeSideByLessThanAStep) {
     };
     down(value(minutes_left_text(v)), v, 1.0);
     up(value(minutes_owed_text(v)), v, 1.0);
-    // Of the depths that have this text too the shallowest is no shallower.
+    // The shallowest depth that has this text too is no shallower.
     if (v > 0.0) up(value(stop_text(v, Units::kMetric)) - 0.05, v, 0.1 + 1e-9);
     if (v > 0.0) up(value(stop_text(v, Units::kImperial)) - 0.5, v / 0.3048, 1.0);
     EXPECT_GE(value(stop_text(v, Units::kMetric)), value(ceiling_text(v, Units::kMetric)));

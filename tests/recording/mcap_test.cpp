@@ -222,7 +222,7 @@ TEST(Mcap, WithoutASummaryTooItGoesOnWithTheNextChunk) {
     ASSERT_TRUE(all.ok()) << what;
     EXPECT_EQ(all->messages, 2 * (kChunks - 1)) << what;
     EXPECT_GE(all->damages, 1u) << what;
-    // Who stops there says so, too: it is not only cut off.
+    // A reader that stops there says so: the file is not only cut off.
     const auto stop = read_mcap(*source, "a.mcap", nobody);
     EXPECT_EQ(stop->messages, 4u) << what;
     EXPECT_EQ(stop->damages, 1u) << what;

@@ -34,7 +34,7 @@ TEST(Lighting, TermsAreExactlyWhatTheSceneNames) {
   }
 }
 
-// What the user names as stops is what counts, whatever the light.
+// The stops that the user names count, whatever the light.
 TEST(Lighting, AFixedExposureIsThatOfItsStopsAlone) {
   scene::Scene scene;
   scene.sun = scene::Sun{};

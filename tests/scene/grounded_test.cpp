@@ -1,4 +1,4 @@
-// What lies or stands on the ground in the places of assets/scenes: it is seen, and it does not
+// The things that lie or stand on the ground in the places of assets/scenes are seen and do not
 // float.
 #include <gtest/gtest.h>
 

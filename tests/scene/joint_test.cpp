@@ -176,7 +176,7 @@ TEST(Joint, WrongNamesAreNamed) {
             "(nearest: \"fin_l\")");
 }
 
-// Of each place's divers: the exhaust of the regulator, as it is worn and posed.
+// Bubbles of each place's divers leave the regulator's exhaust, as it is worn and posed.
 TEST(Joint, TheBubblesOfPlacesLeaveTheRegulator) {
   std::size_t sources = 0;
   for (const auto& entry :

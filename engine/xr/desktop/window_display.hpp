@@ -1,4 +1,4 @@
-// What the two displays of a desktop window have in common. Rendering thread.
+// The common part of the two displays of a desktop window. Rendering thread.
 #pragma once
 
 #include "engine/xr/display.hpp"

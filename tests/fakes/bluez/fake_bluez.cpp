@@ -225,7 +225,7 @@ bool FakeBluez::answer() {
   return true;
 }
 
-// What BlueZ knows: an adapter, which has an address too, a strap, its characteristics.
+// The objects that BlueZ knows: an adapter, which has an address too, a strap, its characteristics.
 std::string FakeBluez::objects() const {
   std::string out;
   const auto object = [&](const std::string& path, const std::string& interface, const auto& has) {

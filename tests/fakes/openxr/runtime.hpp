@@ -223,7 +223,7 @@ struct Located {
   XrTime sample_time = 0;  // of a gaze
 };
 Located locate(Runtime& runtime, const Space& space, XrTime time);
-// What stands in a pose whose position is not valid: a client must not read it.
+// The position of a pose in which it is not valid: a client must not read it.
 inline constexpr XrVector3f kUnknown{NAN, NAN, NAN};
 Located locate_view_space(Runtime& runtime, XrTime time);
 Located locate_action(Runtime& runtime, const Space& space, XrTime time);

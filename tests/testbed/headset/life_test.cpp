@@ -110,7 +110,7 @@ TEST_F(HeadsetLife, AHeadsetThatIsUnpluggedForAWhileIsWaitedFor) {
   EXPECT_EQ(shown(), 6u);
 }
 
-// Of a session that cannot be made at once, too.
+// The headset is tried again also if its session cannot be made at once.
 TEST_F(HeadsetLife, ASessionThatIsRefusedAtFirstIsTriedAgain) {
   fakes::FakeHeadset fake(kSmall +
                           "frame 3 instance_refusals 1000\nframe 3 fails xrCreateSession 1\n"

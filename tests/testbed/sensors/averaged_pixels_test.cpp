@@ -61,8 +61,8 @@ TEST_F(AveragedPixels, AreTheMeanOfTheFinerPicture) {
   }
 }
 
-// What a thin rod adds to each row of the picture, over its mean: as it breaks into dots, so does
-// that.
+// The light that a thin rod adds to each row of the picture, over its mean: it varies as the rod
+// breaks into dots.
 double spread_along(const ViewImages& image) {
   std::vector<double> rows;
   for (std::uint32_t y = 8; y < 88; ++y) {

@@ -238,7 +238,7 @@ TEST_F(MovingBar, BlurIsARampAsLongAsItsWayAtBothEdges) {
   }
 }
 
-// What stands before it hides it, whatever moves behind.
+// A nearer thing hides the bar, whatever moves behind.
 TEST_F(MovingBar, PassesBehindWhatIsNearer) {
   const auto near_by = [](int x) { return x < 40; };
   const auto inside = [](int x) { return x >= kFrom && x < kUntil; };

@@ -259,8 +259,7 @@ TEST_F(Light, ASineWavesFirstFocusLiesWhereTheFormulaSays) {
   EXPECT_NEAR(1.0 / (1.0 - 1.0 / crest), 2.028, 0.04);
 }
 
-// What lies between two levels has a blend of theirs: the brightest level is where a floor would
-// be.
+// A depth between two levels has a blend of theirs: the brightest level is where a floor would be.
 TEST_F(Light, TheBrightestDepthUnderASineWaveIsItsFirstFocus) {
   const scene::Caustics caustics{
       .waves = {{0.05, 1.0, radians(90.0)}}, .tile_m = 2.0, .texels = 512};

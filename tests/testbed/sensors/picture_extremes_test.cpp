@@ -150,7 +150,7 @@ TEST_F(PictureExtremes, ExposureOverTwentyStopsGoesFromBlackToWhiteWithoutHoles)
   EXPECT_LT(last, 1.0);
 }
 
-// What scatters forwards beside the sun's glare is not taken from things in front of it.
+// Light that scatters forwards beside the sun's glare is not taken from things in front of it.
 TEST_F(PictureExtremes, AThingInFrontOfTheSunKeepsEachColour) {
   const Place place{.eye_m = {0.0, -13.0, 0.0},
                     .pitch_rad = std::acos(std::cos(radians(50.0)) / 1.333),

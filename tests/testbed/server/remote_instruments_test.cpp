@@ -73,8 +73,8 @@ bool comes(const std::function<bool()>& is) {
   return false;
 }
 
-// What a modem of the diver's receives in words is on the instruments, here and far away; bytes
-// for a program are not.
+// Instruments, here and far away, show the words that the diver's modem receives, and no bytes that
+// are for a program.
 TEST(RemoteInstrumentsTest, TheDiverReadsWhatTheModemReceives) {
   const test::ScratchFolder folder;
   const std::filesystem::path scene = folder / "loud.toml";  // nothing is lost

@@ -77,8 +77,8 @@ TEST(SceneCondition, AGasWithoutOxygenEndsTheSwim) {
             unaware.state().humans()[0].human.root.position_ned_m.x - 5.0);
 }
 
-// Who faints in the middle of a kick goes limp from there, and does no work by it; the state of
-// that moment goes on alike elsewhere.
+// A diver who faints in the middle of a kick goes limp from there, and does no work by it; the
+// state of that moment goes on alike elsewhere.
 TEST(SceneCondition, WhoFaintsGoesLimpByAndBy) {
   Files files;
   const std::string thin = files.file(

@@ -88,7 +88,7 @@ TEST(PlaceOutlook, NamesADopplerLogThatNeverHearsABottom) {
             std::string::npos);
 }
 
-// Of a diver's plan as of a vehicle's mission: he reaches a place within his acceptance of it.
+// A diver's plan is told as a vehicle's mission: he reaches a place within his acceptance of it.
 TEST(PlaceOutlook, NamesADiversWaypointsInTheAirTheBedAndAnObstacle) {
   const auto told = [](const std::string& points, const std::string& more) {
     return places_told("[physics]\n" +

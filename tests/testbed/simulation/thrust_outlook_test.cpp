@@ -1,5 +1,5 @@
-// What is told before a dive of thrusters that push axes only together, and whether the dive then
-// goes as it was told. The oracle of forces is closed: horizontal thrusters stand at 45 degrees.
+// The lines before a dive about thrusters that push axes only together, and whether the dive then
+// goes as they say. The oracle of forces is closed: horizontal thrusters stand at 45 degrees.
 #include "testbed/simulation/thrust_outlook.hpp"
 
 #include <cmath>
