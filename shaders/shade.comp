@@ -142,6 +142,35 @@ vec2 skylight_at(ivec3 at, float planar_m) {
   return from_coarser(skylight_image, float(kSkylightStep), at, 0.5 * visibility_distance(planar_m)).rg;
 }
 
+// What stands over the sea in a mirror's way, as far as the picture shows it: its radiance, and 1 where there is some.
+// Lit by the sun and the sky without shadows. For things near the surface, as hulls: the way is searched for 6 m.
+vec4 mirrored_at(vec3 from, vec3 way, uint layer) {
+  vec3 eye = views[layer].eye, dx = views[layer].ray_dx, dy = views[layer].ray_dy, corner = views[layer].ray_corner;
+  float near_m = views[layer].near_m, before_m = 0.0, dx2 = dot(dx, dx), dy2 = dot(dy, dy);
+  vec3 ahead = cross(dx, dy);
+  ahead /= dot(ahead, corner);
+  ivec2 size = textureSize(depth_image, 0).xy;
+  for (float far_m = 0.08; far_m < 6.0; far_m = far_m * 1.25 + 0.04) {
+    vec3 to = from + way * far_m - eye;
+    float planar_m = dot(to, ahead);
+    if (planar_m < near_m) break;
+    vec3 on = to / planar_m - corner;
+    ivec2 at = ivec2(floor(vec2(dot(on, dx) / dx2, dot(on, dy) / dy2)));
+    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) break;
+    float depth = texelFetch(depth_image, ivec3(at, layer), 0).r;
+    float behind_m = depth > 0.0 && depth < 1.0 ? planar_m - near_m / depth : -1.0;
+    if (behind_m > 0.0 && behind_m < far_m - before_m + 0.3) {
+      vec4 root = texelFetch(albedo_image, ivec3(at, layer), 0);
+      vec3 normal = octahedral_decode(texelFetch(normal_image, ivec3(at, layer), 0).rg), sun = sun_in_air();
+      vec3 light_on = beam_in_air(sun) * max(dot(normal, sun), 0.0) +
+                      light.surface_irradiance * ((1.0 - light.direct_share) * (0.5 + 0.5 * normal.y));
+      return vec4(root.rgb * root.rgb * light_on / kPi, 1.0);
+    }
+    before_m = far_m;
+  }
+  return vec4(0.0);
+}
+
 void main() {
   // The layer by workgroup: so drivers see that a whole group reads one view.
   uint layer = kTiled ? 0u : gl_WorkGroupID.z;
@@ -222,8 +251,12 @@ void main() {
     imageStore(scattered_image, to, hit && !hidden ? vec4(clamp(kept, vec3(-60000.0), vec3(60000.0)), sight.length_m) : vec4(0.0));
   }
   radiance = radiance * sight.transmittance + sight.added;
-  if (light_has(kLightSurface) && meets && from_above)
-    radiance = sea_from_above(surface, eye, direction, radiance, pixel_rad);
+  if (light_has(kLightSurface) && meets && from_above) {
+    vec3 place = eye + direction * surface.distance_m;
+    surface = rippled(surface, place.xz, pixel_rad * surface.distance_m * inversesqrt(max(-direction.y, 0.05)));
+    vec4 mirrored = mirrored_at(place, sea_mirror(surface, direction), layer);
+    radiance = sea_from_above(surface, eye, direction, radiance, mirrored, pixel_rad);
+  }
   radiance += lamp_glow(eye, direction, sight_m);
   if (hidden) radiance = vec3(0.0);
   imageStore(hdr_image, to, vec4(min(radiance * light.exposure, vec3(60000.0)), 1.0));

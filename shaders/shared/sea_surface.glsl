@@ -138,13 +138,18 @@ bool sea_meets(vec3 eye, vec3 direction, bool from_above, float pixel_rad, float
   return may && point.distance_m <= kFarthestSea_m;
 }
 
-// The sky's radiance in air: a clear sky is about half brighter at the horizon than overhead; its irradiance
-// is what does not come straight from the sun.
+// The sky's radiance in air; its irradiance is what does not come straight from the sun. A clear sky is pale and 1.8
+// times as bright at the horizon as overhead, where it is blue (CIE S 011 of 2003: 3.6 times in its type 12). Its mean
+// colour is daylight of 12000 K; one without a sun has one colour.
 vec3 sky_over(vec3 direction) {
   float low = 1.0 - max(direction.y, 0.0);
-  const vec3 kTint = vec3(0.8612, 1.0227, 1.1841);
-  vec3 even = light.surface_irradiance * ((1.0 - light.direct_share) / (kPi * kSkyTransmittance)) * kTint;
-  return even * ((0.8 + 0.6 * low * low) / 0.9);
+  const vec3 kMean = vec3(0.792, 1.011, 1.501), kHorizon = vec3(1.45, 1.60, 1.75);
+  // Weighted by the cosine to the zenith, (low + low^8) / 2 has the mean 8/45.
+  const vec3 kZenith = (45.0 * kMean - 8.0 * kHorizon) / 37.0;
+  vec3 even = light.surface_irradiance * ((1.0 - light.direct_share) / (kPi * kSkyTransmittance));
+  float low2 = low * low, low4 = low2 * low2;
+  vec3 clear = mix(kZenith, kHorizon, 0.5 * (low + low4 * low4));
+  return even * mix(vec3(1.0), clear, min(2.0 * light.direct_share, 1.0));
 }
 
 // Unpolarised reflectance; cosines on the water's and the air's side.
@@ -289,8 +294,42 @@ vec3 sea_from_below(SeaPoint point, vec3 eye, vec3 direction, float pixel_rad) {
   return mix(sum, light.surface_irradiance * (0.5 / kPi), foam);
 }
 
-// Radiance just above the surface, up along a sight that goes down; below: what comes up in the water.
-vec3 sea_from_above(SeaPoint point, vec3 eye, vec3 direction, vec3 below, float pixel_rad) {
+// Slopes of the ripples too short for the sum of waves, at a place relative to the origin: value noise of three sizes
+// that sways with the waves. Their mean square is 1, each axis's 1/2, less what a footprint blurs; x, y and that share.
+vec3 ripples_at(vec2 at, vec2 sway, float footprint_m) {
+  vec3 sum = vec3(0.0);
+  float cell_m = 0.11;
+  for (int i = 0; i < 3; ++i) {
+    float kept = wave_kept(3.0 * footprint_m / cell_m);
+    vec2 p = (at + sway) / cell_m + sea.foam_shift + float(i) * vec2(17.3, 41.9);
+    float e = foam_noise(p);
+    vec2 slope = vec2(foam_noise(p + vec2(0.4, 0.0)), foam_noise(p + vec2(0.0, 0.4))) - e;
+    // A difference over 0.4 cells has a deviation of 0.145 (of uniform values, smoothstep between them).
+    sum.xy += slope * (kept * 0.7071 / (0.145 * 1.7321));
+    sum.z += kept * kept / 3.0;
+    cell_m *= 0.47;
+  }
+  return sum;
+}
+
+// With the ripples that a pixel shows, where the sea has waves.
+SeaPoint rippled(SeaPoint point, vec2 at, float footprint_m) {
+  if (!light_has(kLightWaves)) return point;
+  vec3 ripples = ripples_at(at, 0.6 * point.slope, footprint_m);
+  float fine2 = min(sea.fine_slope2, point.rough2);
+  point.slope += ripples.xy * sqrt(fine2);
+  point.rough2 -= fine2 * ripples.z;
+  return point;
+}
+
+// Radiance just above the surface, up along a sight that goes down; below: what comes up in the water; mirrored: of
+// what stands in the mirror's way, its share in w.
+vec3 sea_mirror(SeaPoint point, vec3 direction) {
+  vec3 normal = normalize(vec3(-point.slope.x, 1.0, -point.slope.y));
+  vec3 mirror = direction + 2.0 * max(dot(-direction, normal), 0.0) * normal;
+  return normalize(vec3(mirror.x, max(mirror.y, 0.02), mirror.z));
+}
+vec3 sea_from_above(SeaPoint point, vec3 eye, vec3 direction, vec3 below, vec4 mirrored, float pixel_rad) {
   vec3 normal = normalize(vec3(-point.slope.x, 1.0, -point.slope.y));
   float facing = dot(-direction, normal);
   // Unresolved slopes show their nearer sides: the least cosine is about their deviation. A flat surface has none.
@@ -300,7 +339,7 @@ vec3 sea_from_above(SeaPoint point, vec3 eye, vec3 direction, vec3 below, float 
   float reflected = fresnel_of(in_water, in_air);
   vec3 mirror = direction + 2.0 * in_air * normal;
   mirror = normalize(vec3(mirror.x, max(mirror.y, 0.02), mirror.z));
-  vec3 radiance = reflected * sky_over(mirror) + (1.0 - reflected) * below / (kWaterIndex * kWaterIndex);
+  vec3 radiance = reflected * mix(sky_over(mirror), mirrored.rgb, mirrored.a) + (1.0 - reflected) * below / (kWaterIndex * kWaterIndex);
   if (light_has(kLightSunSeen)) {
     vec3 sun = sun_in_air();
     radiance += beam_in_air(sun) * glitter(-direction, sun, point, nearer, pixel_rad);
