@@ -25,7 +25,8 @@ static_assert(sizeof(MaterialData) == 4 * 56 && offsetof(MaterialData, emissive)
               offsetof(MaterialData, normal_map) == 4 * 27 &&
               offsetof(MaterialData, occlusion_map) == 4 * 34 &&
               offsetof(MaterialData, emissive_map) == 4 * 41 &&
-              offsetof(MaterialData, diffuse_transmission) == 4 * 48);
+              offsetof(MaterialData, diffuse_transmission) == 4 * 48 &&
+              offsetof(MaterialData, detail_map) == 4 * 49);
 
 const std::vector<gpu::BindingDesc>& material_bindings() {
   static const std::vector<gpu::BindingDesc> bindings{
@@ -34,7 +35,8 @@ const std::vector<gpu::BindingDesc>& material_bindings() {
       {shared::kMaterialMetalRough, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
       {shared::kMaterialNormal, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
       {shared::kMaterialOcclusion, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
-      {shared::kMaterialEmissive, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}};
+      {shared::kMaterialEmissive, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
+      {shared::kMaterialDetail, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}};
   return bindings;
 }
 
@@ -61,6 +63,7 @@ std::uint32_t flags_of(const scene::Material& m, bool vertex_colors) {
   flag(m.normal_texture.present(), shared::kMaterialNormalTexture);
   flag(m.occlusion_texture.present(), shared::kMaterialOcclusionTexture);
   flag(m.emissive_texture.present(), shared::kMaterialEmissiveTexture);
+  flag(m.detail_texture.present(), shared::kMaterialDetailTexture);
   flag(m.unlit, shared::kMaterialUnlit);
   flag(vertex_colors, shared::kMaterialVertexColor);
   flag(m.alpha_mode == scene::AlphaMode::kMask, shared::kMaterialMask);
@@ -198,6 +201,7 @@ Status MaterialBuilder::add_material(std::size_t model_index, const scene::Mater
   data.normal_map = mapping_of(m.normal_texture);
   data.occlusion_map = mapping_of(m.occlusion_texture);
   data.emissive_map = mapping_of(m.emissive_texture);
+  data.detail_map = mapping_of(m.detail_texture);
 
   MaterialTextures textures;
   NERITIC_TRY(textures.base_color, texture_use(model_index, m.base_color_texture, true));
@@ -205,6 +209,7 @@ Status MaterialBuilder::add_material(std::size_t model_index, const scene::Mater
   NERITIC_TRY(textures.normal, texture_use(model_index, m.normal_texture, false));
   NERITIC_TRY(textures.occlusion, texture_use(model_index, m.occlusion_texture, false));
   NERITIC_TRY(textures.emissive, texture_use(model_index, m.emissive_texture, true));
+  NERITIC_TRY(textures.detail, texture_use(model_index, m.detail_texture, false));
 
   GpuMaterial material;
   material.flags = flags_of(m, vertex_colors);
@@ -262,7 +267,8 @@ Result<GpuSceneMaterials> MaterialBuilder::finish(VkDescriptorSetLayout layout) 
         texture(shared::kMaterialMetalRough, t.metal_rough),
         texture(shared::kMaterialNormal, t.normal),
         texture(shared::kMaterialOcclusion, t.occlusion),
-        texture(shared::kMaterialEmissive, t.emissive)};
+        texture(shared::kMaterialEmissive, t.emissive),
+        texture(shared::kMaterialDetail, t.detail)};
     gpu::write_descriptors(*device_, set, material_bindings(), resources);
     out_.materials[i].set = set;
   }

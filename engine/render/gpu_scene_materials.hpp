@@ -37,7 +37,7 @@ class MaterialBuilder {
     std::uint32_t image = 0, sampler = 0;
   };
   struct MaterialTextures {
-    TextureUse base_color, metal_rough, normal, occlusion, emissive;
+    TextureUse base_color, metal_rough, normal, occlusion, emissive, detail;
   };
   MaterialBuilder(gpu::Device& device, const scene::Scene& scene)
       : device_(&device), scene_(&scene) {}

@@ -100,6 +100,15 @@ TextureRef parse_texture_ref(Loading& loading, Field field) {
   return out;
 }
 
+// The project's own, model.hpp: repeats is how often the picture repeats where the others do once.
+TextureRef parse_detail_ref(Loading& loading, Field field) {
+  TextureRef out = parse_texture_ref(loading, field);
+  const float repeats = field["repeats"].number_f(1.0f);
+  out.transform_u *= repeats;
+  out.transform_v *= repeats;
+  return out;
+}
+
 // A number that glTF lets lie in [0, 1]; another becomes the nearer end, with a note.
 double clamped(Field field, double value) {
   if (value < 0.0 || value > 1.0)
@@ -178,6 +187,7 @@ Material parse_material(Loading& loading, Field field) {
   out.occlusion_texture = parse_texture_ref(loading, field["occlusionTexture"]);
   out.occlusion_strength = unit(field["occlusionTexture"]["strength"], 1.0f);
   out.emissive_texture = parse_texture_ref(loading, field["emissiveTexture"]);
+  out.detail_texture = parse_detail_ref(loading, field["extras"]["detailTexture"]);
   // Emitted light has no upper limit: kept below 1e6 so that products stay finite.
   const float strength =
       field.extension("KHR_materials_emissive_strength")["emissiveStrength"].number_f(1.0f);
@@ -197,13 +207,13 @@ Material parse_material(Loading& loading, Field field) {
 }
 
 // All of material i, those to be mixed in too.
-std::array<TextureRef*, 7> texture_refs(Loading& loading, std::size_t i) {
+std::array<TextureRef*, 8> texture_refs(Loading& loading, std::size_t i) {
   Material& material = loading.model.materials[i];
   MixedPictures& mixed = loading.mixed[i];
   return {&material.base_color_texture, &material.metallic_roughness_texture,
           &material.normal_texture,     &material.occlusion_texture,
-          &material.emissive_texture,   &mixed.specular_texture,
-          &mixed.transmission_texture};
+          &material.emissive_texture,   &material.detail_texture,
+          &mixed.specular_texture,      &mixed.transmission_texture};
 }
 
 // Textures whose pictures are the same bytes get the same picture: it is decoded and held once.

@@ -93,6 +93,10 @@ struct Material {
   float diffuse_transmission = 0.0f;
   TextureRef base_color_texture, metallic_roughness_texture, normal_texture, occlusion_texture,
       emissive_texture;
+  // For close views, linear: red and green add to the tangent-space normal, blue changes the base
+  // colour by up to its own value; 0.5 is no change. In a .glb it is extras.detailTexture of a
+  // material: index, texCoord and repeats.
+  TextureRef detail_texture;
 };
 
 enum class Wrap { kRepeat, kMirroredRepeat, kClampToEdge };

@@ -36,9 +36,10 @@ struct Look {
   Vec3 color{0.5};  // linear
   double roughness = 0.9, metallic = 0.0;
   bool double_sided = false;
-  std::filesystem::path color_texture, normal_texture;
-  std::string place_color_texture, place_normal_texture;  // "file:line: key", for errors
-  double texture_m = 1.0;
+  std::filesystem::path color_texture, normal_texture, detail_texture;
+  std::string place_color_texture, place_normal_texture,
+      place_detail_texture;                // "file:line: key", for errors
+  double texture_m = 1.0, detail_m = 0.3;  // a repeat
 };
 
 // The model that an object draws. Two requests with the same identity() are the same model.

@@ -54,6 +54,9 @@ Result<Material> make_material(const Look& look, bool metres_in_uv, Model& model
                                  material.base_color_texture));
   NERITIC_TRY_STATUS(add_texture(look.normal_texture, look.place_normal_texture, repeats, model,
                                  material.normal_texture));
+  // Texture coordinates of a terrain count repeats of texture_m.
+  NERITIC_TRY_STATUS(add_texture(look.detail_texture, look.place_detail_texture,
+                                 look.texture_m / look.detail_m, model, material.detail_texture));
   return material;
 }
 
@@ -149,10 +152,12 @@ std::vector<std::optional<Result<Model>>> load_bases(
 std::string ModelRequest::base_identity() const {
   if (kind == Kind::kFile) return "file " + identity_of(file);
   const std::string of_look =
-      fmt::format("{} {} {} {} {} {} {} {} {}", look.color.x, look.color.y, look.color.z,
+      fmt::format("{} {} {} {} {} {} {} {} {} {} {}", look.color.x, look.color.y, look.color.z,
                   look.roughness, look.metallic, look.double_sided, look.texture_m,
                   look.color_texture.empty() ? std::string() : identity_of(look.color_texture),
-                  look.normal_texture.empty() ? std::string() : identity_of(look.normal_texture));
+                  look.normal_texture.empty() ? std::string() : identity_of(look.normal_texture),
+                  look.detail_texture.empty() ? std::string() : identity_of(look.detail_texture),
+                  look.detail_m);
   if (kind == Kind::kTerrain)
     return fmt::format("terrain {} {} {} {} {}", heights.cell_m, heights.scale, heights.offset_m,
                        identity_of(file), of_look);

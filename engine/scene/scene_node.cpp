@@ -49,8 +49,9 @@ class Mover {
   }
   int material(int old) {
     return move(materials_, old, from_.materials, to_.materials, [&](Material& m) {
-      for (TextureRef* ref : {&m.base_color_texture, &m.metallic_roughness_texture,
-                              &m.normal_texture, &m.occlusion_texture, &m.emissive_texture})
+      for (TextureRef* ref :
+           {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
+            &m.occlusion_texture, &m.emissive_texture, &m.detail_texture})
         ref->texture = texture(ref->texture);
     });
   }

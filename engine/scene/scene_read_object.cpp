@@ -27,12 +27,13 @@ constexpr auto kShapeNames = std::to_array<Key>({"sphere", "box", "plane", "cyli
 // Keys that describe a drawing; each kind of drawing takes only some of them.
 constexpr auto kDrawingKeys = std::to_array<Key>(
     {"node", "radius_m", "size_m", "height_m", "segments", "inside_out", "cell_m", "height_scale",
-     "height_offset_m", "texture_m", "color", "color_texture", "normal_texture", "roughness",
-     "metallic", "double_sided"});
+     "height_offset_m", "texture_m", "color", "color_texture", "normal_texture", "detail_texture",
+     "detail_m", "roughness", "metallic", "double_sided"});
 constexpr auto kLookKeys =
     std::to_array<Key>({"color", "color_texture", "roughness", "metallic", "double_sided"});
-constexpr auto kTerrainKeys = std::to_array<Key>(
-    {"cell_m", "height_scale", "height_offset_m", "texture_m", "normal_texture"});
+constexpr auto kTerrainKeys =
+    std::to_array<Key>({"cell_m", "height_scale", "height_offset_m", "texture_m", "normal_texture",
+                        "detail_texture", "detail_m"});
 
 bool contains(KeyList keys, Key key) {
   return std::find(keys.begin(), keys.end(), key) != keys.end();
@@ -54,8 +55,11 @@ void read_look(TableReader& reader, ModelRequest& request, double default_textur
   look.double_sided = reader.flag("double_sided", false);
   look.color_texture = reader.file("color_texture");
   look.normal_texture = reader.file("normal_texture");
+  look.detail_texture = reader.file("detail_texture");
   look.place_color_texture = reader.place("color_texture");
   look.place_normal_texture = reader.place("normal_texture");
+  look.place_detail_texture = reader.place("detail_texture");
+  look.detail_m = reader.number("detail_m", look.detail_m, kSize);
   look.texture_m = reader.number("texture_m", default_texture_m, kSize);
 }
 

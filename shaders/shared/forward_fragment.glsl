@@ -43,6 +43,8 @@ void main() {
   take_material();
   int view = kMultiview ? gl_ViewIndex : 0;
   vec4 base = material_base_color(uv, color);
+  vec3 detail = material_detail(uv);
+  base.rgb *= 1.0 + detail.z;
   vec3 along = position - views[view].eye;
   float distance_m = max(length(along), 1e-6);
   along /= distance_m;
@@ -53,7 +55,7 @@ void main() {
   if (material_has(kMaterialUnlit)) {
     radiance = base.rgb * light.emissive_scale;
   } else {
-    Surface s = Surface(position, fragment_normal(normal, tangent, uv), base.rgb, m.x, m.y, m.z, material.reflectance,
+    Surface s = Surface(position, fragment_normal(normal, tangent, uv, detail), base.rgb, m.x, m.y, m.z, material.reflectance,
                         material_has(kMaterialThin) ? material.diffuse_transmission : 0.0);
     if (material_has(kMaterialTransmissive)) {
       // A thin pane: what is neither reflected nor scattered diffusely passes straight on.

@@ -2,8 +2,8 @@
 #ifndef NERITIC_FRAGMENT_SURFACE_GLSL
 #define NERITIC_FRAGMENT_SURFACE_GLSL
 
-// The shading normal in world axes, towards the side that is seen.
-vec3 fragment_normal(vec3 normal, vec4 tangent, vec4 uv) {
+// The shading normal in world axes, towards the side that is seen; detail is that of material_detail().
+vec3 fragment_normal(vec3 normal, vec4 tangent, vec4 uv, vec3 detail) {
   vec3 n = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0, 1.0, 0.0);
   if (!gl_FrontFacing) n = -n;
   if (!material_has(kMaterialNormalTexture)) return n;
@@ -13,7 +13,7 @@ vec3 fragment_normal(vec3 normal, vec4 tangent, vec4 uv) {
   t *= inversesqrt(size);
   vec3 b = cross(n, t) * (gl_FrontFacing ? tangent.w : -tangent.w);
   vec3 m = texture(normal_texture, mapped(material.normal_map, uv)).xyz * 2.0 - 1.0;
-  m.xy *= material.normal_scale;
+  m.xy = m.xy * material.normal_scale + detail.xy;
   return normalize(t * m.x + b * m.y + n * max(m.z, 1e-3));
 }
 

@@ -40,7 +40,9 @@ layout(location = 4) out vec2 out_motion;
 void main() {
   take_material();
   vec4 base = material_base_color(uv, color);
-  out_normal = octahedral_encode(fragment_normal(normal, tangent, uv));
+  vec3 detail = material_detail(uv);
+  base.rgb *= 1.0 + detail.z;
+  out_normal = octahedral_encode(fragment_normal(normal, tangent, uv, detail));
   out_label = uvec2(label & 0xffffu, label >> 16);
 #ifndef NERITIC_SHAPE
   vec3 m = fragment_material(uv);

@@ -12,6 +12,7 @@ layout(set = 1, binding = kMaterialMetalRough) uniform sampler2D metal_rough_tex
 layout(set = 1, binding = kMaterialNormal) uniform sampler2D normal_texture;
 layout(set = 1, binding = kMaterialOcclusion) uniform sampler2D occlusion_texture;
 layout(set = 1, binding = kMaterialEmissive) uniform sampler2D emissive_texture;
+layout(set = 1, binding = kMaterialDetail) uniform sampler2D detail_texture;
 
 layout(constant_id = kSpecMaterial) const uint kMaterialFlags = ~0u;
 bool material_has(uint flag) { return (kMaterialFlags & flag) != 0u; }
@@ -44,12 +45,23 @@ void take_material() {
   material.occlusion_map = material_mapping(34u);
   material.emissive_map = material_mapping(41u);
   material.diffuse_transmission = material_word(48u);
+  material.detail_map = material_mapping(49u);
 }
 
 // uv: both sets, xy and zw.
 vec2 mapped(TextureMapping map, vec4 uv) {
   vec3 p = vec3(map.uv_set == 0u ? uv.xy : uv.zw, 1.0);
   return vec2(dot(map.u, p), dot(map.v, p));
+}
+
+// Of a detail texture's level: a trilinear level is blurred at grazing sights, where grain is looked for.
+const float kDetailBias = -0.5;
+
+// What a close view needs beyond the other textures: xy is added to the tangent-space normal, z is the
+// relative change of the base colour; all 0 on average.
+vec3 material_detail(vec4 uv) {
+  if (!material_has(kMaterialDetailTexture)) return vec3(0.0);
+  return texture(detail_texture, mapped(material.detail_map, uv), kDetailBias).xyz * 2.0 - 1.0;
 }
 
 vec4 material_base_color(vec4 uv, vec4 vertex_color) {

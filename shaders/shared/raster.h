@@ -64,6 +64,7 @@ NERITIC_CONST uint kMaterialVertexColor = 64;
 NERITIC_CONST uint kMaterialMask = 128;
 NERITIC_CONST uint kMaterialTransmissive = 256;
 NERITIC_CONST uint kMaterialThin = 512;  // diffuse_transmission is above 0
+NERITIC_CONST uint kMaterialDetailTexture = 1024;
 
 // KHR_texture_transform and the UV set of one texture.
 struct TextureMapping {
@@ -91,7 +92,7 @@ struct MaterialData {
   TextureMapping occlusion_map;
   TextureMapping emissive_map;
   float diffuse_transmission;
-  float unused[7];  // whole rows of eight: shared/material.glsl
+  TextureMapping detail_map;  // ends a row of eight: shared/material.glsl
 };
 
 // Locations of the instance streams; a vertex's own are 0 to 5.
@@ -114,6 +115,7 @@ NERITIC_CONST uint kMaterialMetalRough = 2;
 NERITIC_CONST uint kMaterialNormal = 3;
 NERITIC_CONST uint kMaterialOcclusion = 4;
 NERITIC_CONST uint kMaterialEmissive = 5;
+NERITIC_CONST uint kMaterialDetail = 6;
 
 // Specialisation constants. A processor's driver computes both sides of a branch and loads lane by
 // lane what an index picks that it cannot prove uniform, so both the texture reads of a material

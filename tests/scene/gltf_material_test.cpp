@@ -43,6 +43,28 @@ TEST(GltfLoader, TextureTransformIsTheExtensionsOwnExample) {
   }
 }
 
+TEST(GltfLoader, ADetailTextureRepeatsAsItsExtrasSay) {
+  Builder b;
+  b.quad();
+  const test::ScratchFolder folder;
+  ASSERT_TRUE(write_png8(folder / "a.png", ImageU8(2, 2, 3, 9)).ok());
+  b.json["images"] = {{{"uri", "a.png"}}};
+  b.json["textures"] = {{{"source", 0}}};
+  b.json["materials"] = {
+      {{"extras", {{"detailTexture", {{"index", 0}, {"texCoord", 1}, {"repeats", 6.5}}}}}},
+      {{"extras", {{"detailTexture", {{"index", 0}}}}}},
+      {{"extras", {{"note", "none"}}}}};
+  const auto model = b.load(folder.path());
+  ASSERT_LOADS(model);
+  const TextureRef& ref = model->materials[0].detail_texture;
+  ASSERT_TRUE(ref.present());
+  EXPECT_EQ(ref.uv_set, 1);
+  EXPECT_EQ(ref.transform_u, Vec3f(6.5, 0, 0));
+  EXPECT_EQ(ref.transform_v, Vec3f(0, 6.5, 0));
+  EXPECT_EQ(model->materials[1].detail_texture.transform_u, Vec3f(1, 0, 0));
+  EXPECT_FALSE(model->materials[2].detail_texture.present());
+}
+
 TEST(GltfLoader, SamplersKeepFiltersAndWraps) {
   Builder b;
   b.json["images"] = {{{"uri", "data:image/png;base64,AAAA"}}};

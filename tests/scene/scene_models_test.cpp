@@ -71,7 +71,7 @@ TEST(SceneModels, ATerrainWithANormalMapHasTangentsAlongX) {
   const Scene scene =
       scene_of(scratch,
                "[[objects]]\nterrain = 'hill.npy'\ncell_m = 2\nnormal_texture = 'n.png'\n"
-               "color_texture = 'n.png'");
+               "color_texture = 'n.png'\ntexture_m = 3\ndetail_texture = 'n.png'\ndetail_m = 0.25");
   const Model& model = *scene.models.at(0);
   const Primitive& p = model.meshes[0].primitives[0];
   ASSERT_EQ(p.tangents.size(), p.positions.size());
@@ -81,9 +81,11 @@ TEST(SceneModels, ATerrainWithANormalMapHasTangentsAlongX) {
     expect_near(Vec3(tangent), along, 1e-6);
     EXPECT_EQ(tangent.w, 1.0f);
   }
-  EXPECT_EQ(model.images.size(), 2u);
+  EXPECT_EQ(model.images.size(), 3u);
   EXPECT_EQ(model.textures.at(model.materials[0].normal_texture.texture).image, 1);
   EXPECT_EQ(model.textures.at(model.materials[0].base_color_texture.texture).image, 0);
+  EXPECT_EQ(model.textures.at(model.materials[0].detail_texture.texture).image, 2);
+  EXPECT_EQ(model.materials[0].detail_texture.transform_u, Vec3f(12, 0, 0));
 }
 
 TEST(SceneModels, APictureThatDoesNotLoadIsNamedWithItsOwnKeyAndLine) {
@@ -93,13 +95,16 @@ TEST(SceneModels, APictureThatDoesNotLoadIsNamedWithItsOwnKeyAndLine) {
   write_hill(scratch);
   const std::string terrain = "[[objects]]\nterrain = 'hill.npy'\ncell_m = 2\n",
                     box = "[[objects]]\nshape = 'box'\nroughness = 0.5\n",
-                    both = "color_texture = 'n.png'\nnormal_texture = 'bad.png'\n";
+                    both = "color_texture = 'n.png'\nnormal_texture = 'bad.png'\n",
+                    third = "color_texture = 'n.png'\ndetail_texture = 'bad.png'\n";
   EXPECT_TRUE(message_of(scratch, box + "color_texture = 'bad.png'\n")
                   .starts_with("s.toml:4: objects[0].color_texture: bad.png: "));
   EXPECT_TRUE(message_of(scratch, terrain + "color_texture = 'bad.png'\n")
                   .starts_with("s.toml:4: objects[0].color_texture: bad.png: "));
   EXPECT_TRUE(message_of(scratch, terrain + both)
                   .starts_with("s.toml:5: objects[0].normal_texture: bad.png: "));
+  EXPECT_TRUE(message_of(scratch, terrain + third)
+                  .starts_with("s.toml:5: objects[0].detail_texture: bad.png: "));
 }
 
 TEST(SceneModels, AFileThatDoesNotLoadIsNamedWithTheLineThatAsksForIt) {

@@ -55,7 +55,7 @@ const std::map<std::string, Offsets>& shared_structs() {
         MEMBER(MaterialData, base_color_map), MEMBER(MaterialData, metal_rough_map),
         MEMBER(MaterialData, normal_map), MEMBER(MaterialData, occlusion_map),
         MEMBER(MaterialData, emissive_map), MEMBER(MaterialData, diffuse_transmission),
-        MEMBER(MaterialData, unused)}},
+        MEMBER(MaterialData, detail_map)}},
       {"RasterPush", {MEMBER(RasterPush, target_size)}},
       {"SkinVertex",
        {MEMBER(SkinVertex, joints01), MEMBER(SkinVertex, joints23), MEMBER(SkinVertex, weights)}},

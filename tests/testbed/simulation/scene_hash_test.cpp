@@ -461,8 +461,8 @@ std::vector<KeyTable> object_tables(const TestFiles& file) {
        scene::kObjectKeys,
        // Those of tables of their own are above and below; include is what it includes.
        {"include", "class", "reflectivity", "material", "backscatter_db", "texture_m", "color",
-        "color_texture", "normal_texture", "roughness", "metallic", "double_sided", "cameras",
-        "sonars", "lamps", "flock", "afloat"},
+        "color_texture", "normal_texture", "detail_texture", "detail_m", "roughness", "metallic",
+        "double_sided", "cameras", "sonars", "lamps", "flock", "afloat"},
        [=](const std::string& inside) {
          return std::string(kStillWater) + kRock + rov_with("") + "[[objects]]\nname = \"it\"\n" +
                 inside + "\n";
