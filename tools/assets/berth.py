@@ -89,10 +89,9 @@ def berth():
 
 
 def main():
-    g = Glb("berth")
+    g = Glb("berth", packed=True)
     c, _, n = seabed.sand()
-    half = lambda image: 0.25 * sum(image[i::2, j::2] for i in (0, 1) for j in (0, 1))
-    m = g.material("sand", base=g.texture("sand_color", half(c), 74), normal=g.texture("sand_normal", half(n), 72), rough=0.92)
+    m = g.material("sand", base=g.texture("sand_color", c, 72), normal=g.texture("sand_normal", n, 70), rough=0.92, detail=seabed.grains(g))
     g.node("berth", g.mesh("berth", [(berth(), m)]))
     g.save(OUT / "berth.glb")
 

@@ -14,7 +14,7 @@ import numpy as np
 from PIL import Image
 
 MODELS = Path(__file__).resolve().parents[2] / "assets" / "models"
-TYPES = {5121: "u1", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+TYPES = {5120: "i1", 5122: "<i2", 5121: "u1", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 WIDTH = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 SEGMENTS = {"pelvis", "abdomen", "thorax", "head"} | {
     f"{n}_{s}" for s in "lr" for n in ("upper_arm", "forearm", "hand", "upper_leg", "lower_leg", "foot")
@@ -36,8 +36,12 @@ class Model:
     def read(self, index):
         a = self.doc["accessors"][index]
         v = self.doc["bufferViews"][a["bufferView"]]
-        flat = np.frombuffer(self.bin, TYPES[a["componentType"]], a["count"] * WIDTH[a["type"]], v["byteOffset"])
-        return flat.reshape(a["count"], -1)
+        kind = np.dtype(TYPES[a["componentType"]])
+        width = v.get("byteStride", WIDTH[a["type"]] * kind.itemsize) // kind.itemsize
+        flat = np.frombuffer(self.bin, kind, a["count"] * width, v["byteOffset"])
+        out = flat.reshape(a["count"], -1)[:, : WIDTH[a["type"]]]
+        top = {"i1": 127.0, "i2": 32767.0}.get(kind.str[1:])
+        return out / top if top else out
 
 
 def inside_out(pos, tri):

@@ -75,13 +75,14 @@ def gloves():
 
 
 def make(look):
-    g = Glb(look.model)
+    g = Glb(look.model, packed=True)
     c, mr, n = T.suit(look)
     m_suit = g.material(
         "wetsuit",
         base=g.texture("suit_color", c, 80),
         mr=g.texture("suit_mr", mr, 80),
         normal=g.texture("suit_normal", n, 78),
+        detail=(g.texture("suit_detail", T.jersey(), 74), 17),
         metal=1.0,
         rough=1.0,
     )

@@ -21,7 +21,7 @@ class Look:
 LOOKS = (
     Look("diver"),
     Look("diver_grey", suit=(0.24, 0.25, 0.27), panel=(0.50, 0.11, 0.10), tank=WHITE, fins=(0.05, 0.16, 0.42),
-         accent=(0.30, 0.03, 0.03), mask=(0.45, 0.46, 0.46), snorkel=False, texture_px=512),
+         accent=(0.30, 0.03, 0.03), mask=(0.45, 0.46, 0.46), snorkel=False),
     Look("diver_twin", suit=(0.10, 0.10, 0.105), panel=(0.14, 0.14, 0.15), tank=STEEL, fins=(0.035, 0.035, 0.037),
-         accent=(0.05, 0.05, 0.052), snorkel=False, twin=True, texture_px=512),
+         accent=(0.05, 0.05, 0.052), snorkel=False, twin=True),
 )

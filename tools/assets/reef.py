@@ -214,22 +214,29 @@ def whip():
 
 def barrel_sponge():
     """A vase, hollow: ribs that run up, broken into knobs, and a ragged rim."""
-    n = 60
+    n = 84
     ang = np.arange(n) / n * 2 * np.pi
+    round_ = np.column_stack([np.cos(ang), np.zeros(n), np.sin(ang)])
+    notches = 0.045 * N.fbm3(round_, 41, 2.0, 3) - 0.055 * np.maximum(N.fbm3(round_, 45, 3.1, 2) - 0.15, 0)
+    oval = 1 + 0.09 * np.cos(2 * ang + 0.6) + 0.05 * np.cos(ang)
     prof = np.array([(0.20, -0.05), (0.25, 0.06), (0.31, 0.22), (0.34, 0.40), (0.33, 0.54), (0.29, 0.63), (0.265, 0.645), (0.235, 0.62), (0.225, 0.5), (0.20, 0.34), (0.13, 0.24), (0.03, 0.22)])
     way = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(prof, axis=0), axis=1))])
     rings = []
-    for w in np.concatenate([np.linspace(0, way[6], 26)[:-1], np.linspace(way[6], way[-1], 11)]):
+    for w in np.concatenate([np.linspace(0, way[6], 34)[:-1], np.linspace(way[6], way[-1], 12)]):
         r, y = (np.interp(w, way, prof[:, k]) for k in range(2))
         out = N.smooth(way[7], way[5], w)  # 1 outside, 0 within
         c = np.column_stack([np.cos(ang), np.full(n, y * 3), np.sin(ang)])
-        sway = 0.35 * N.fbm3(c * [1, 0.5, 1], 25, 0.9, 2)
-        rib = np.abs(np.sin(ang * 6 + sway)) * (0.85 + 0.5 * N.fbm3(c * [1, 1.3, 1], 27, 1.6, 2))
-        rr = r * (0.94 + out * 0.19 * rib) * (1 + 0.07 * N.fbm3(c * [1, 0.5, 1], 21, 1.2, 2))
-        high = y + N.smooth(0.45, 0.64, y) * (0.025 * N.fbm3(c * [1, 0, 1], 31, 1.6, 2) + 0.022 * rib)
-        rings.append(np.column_stack([rr * np.cos(ang), high, rr * np.sin(ang)]))
+        # Ribs fork, wander and break into knobs and spurs; no two sides are alike.
+        sway = 1.5 * N.fbm3(c * [1, 0.6, 1], 25, 1.1, 3)
+        rib = (1 - np.abs(np.sin(ang * 5.5 + sway))) ** 0.8 * (0.7 + 0.7 * N.fbm3(c * [1, 1.6, 1], 27, 2.0, 2))
+        knob = np.maximum(N.fbm3(c * [1, 1.5, 1], 29, 4.2, 2), 0)
+        rr = r * oval * (0.90 + out * (0.26 * rib + 0.16 * knob)) * (1 + 0.13 * N.fbm3(c * [1, 0.6, 1], 21, 1.3, 2))
+        top = N.smooth(0.36, 0.64, y)
+        high = y + top * (notches + 0.028 * rib + 0.02 * knob)
+        lean = 0.16 * y * y
+        rings.append(np.column_stack([rr * np.cos(ang) + lean, high, rr * np.sin(ang) - 0.4 * lean]))
     part = loft(np.array(rings), (True, True))
-    dark = lambda p: np.where((np.hypot(p[:, 0], p[:, 2]) < 0.245) & (p[:, 1] > 0.2), 0.0, N.smooth(-0.1, 0.5, p[:, 1]))
+    dark = lambda p: np.where((np.hypot(p[:, 0] - 0.16 * p[:, 1] ** 2, p[:, 2]) < 0.215) & (p[:, 1] > 0.2), 0.0, N.smooth(-0.1, 0.5, p[:, 1]))
     part = paint(part, (0.10, 0.045, 0.036), (0.40, 0.20, 0.15), dark, 23, 0.40, 50)
     return box_uv(footed(part, 0.09), 0.3)
 
@@ -361,6 +368,30 @@ def rubble():
     return join(parts)
 
 
+def scree():
+    """Stones and sticks within 0.2 m, about half of each sunk in, for slopes: a small patch lies close to any ground."""
+    rng = np.random.default_rng(71)
+    parts = []
+    for k in range(15):
+        r, a = 0.20 * rng.random() ** 0.6, rng.random() * 2 * np.pi
+        if k % 4:
+            size = 0.012 + 0.060 * rng.random() ** 2.2
+            parts.append(B.stone(size, 50 + k, rng, size > 0.04).at(r * np.cos(a), size * (0.19 - 0.36 * rng.random()), r * np.sin(a)))
+        else:
+            rad = 0.007 + 0.005 * rng.random()
+            parts.append(B.stick(0.05 + 0.07 * rng.random(), rad, 50 + k, rng).at(r * np.cos(a), rad * (0.3 - 0.7 * rng.random()), r * np.sin(a)))
+    return join(parts)
+
+
+def stone_skin(n=256):
+    """Weathered stone and dead coral, 25 cm: stains and hollows, little contrast. Vertex colours tint it."""
+    stain, mid, fine = N.spectral(n, 81, 2.6, 2, 30), N.spectral(n, 82, 2.0, 8, 90), N.spectral(n, 83, 0.8, 30)
+    pits, bowl, _ = N.bumps(n, 0.25, 90, 84, 0.0015, 0.006, where=N.smooth(-0.5, 1.5, stain))
+    tone = 0.84 + 0.05 * stain + 0.045 * mid + 0.03 * fine - 0.10 * pits
+    col = N.mix(tone[..., None] * np.ones(3), (0.70, 0.71, 0.58), 0.35 * N.smooth(0.2, 1.6, stain))
+    return np.clip(col, 0, 1), N.normal_map(0.0011 * mid + 0.0002 * fine - 0.6 * bowl, 0.25, steepest=0.7)
+
+
 def polyps(n=256):
     d1, d2, who = N.cells(n, 260, 3)
     size = np.random.default_rng(4).random(260)[who]
@@ -371,7 +402,7 @@ def polyps(n=256):
 
 
 def main():
-    g = Glb("reef")
+    g = Glb("reef", packed=True)
     pc, pn = polyps()
     coral = g.material("coral", base=g.texture("coral_color", pc, 80), normal=g.texture("coral_normal", pn, 78), rough=0.85)
     h = maze()
@@ -379,11 +410,13 @@ def main():
     brain_m = g.material("brain", base=g.texture("brain_color", ridge, 80), normal=g.texture("brain_normal", N.normal_map(0.006 * h, 0.22), 80), rough=0.8)
     fan_m = g.material("fan", base=g.texture("fan_color", fan_texture()), rough=0.8, double=True, mask=0.3)
     shell_m = g.material("shell", base=g.doc["materials"][coral]["pbrMetallicRoughness"]["baseColorTexture"]["index"], rough=0.55, double=True)
+    sc, sn = stone_skin()
+    stone_m = g.material("stone", base=g.texture("stone_color", sc, 78), normal=g.texture("stone_normal", sn, 72), rough=0.9)
     kinds = [
         ("staghorn", staghorn, coral), ("table", table, coral), ("brain", brain, brain_m), ("fan", fan, fan_m),
         ("whip", whip, coral), ("barrel_sponge", barrel_sponge, coral), ("tube_sponges", tube_sponges, coral),
         ("anemone", anemone, coral), ("starfish", starfish, coral), ("urchin", urchin, coral),
-        ("shells", shells, shell_m), ("rubble", rubble, coral),
+        ("shells", shells, shell_m), ("rubble", rubble, stone_m), ("scree", scree, stone_m),
     ]
     color = sand()[0]
     sand_m = g.material("sand", B.SAND, base=g.texture("sand_color", color[: len(color) // 4, : len(color) // 4], 76), rough=0.95)
@@ -395,7 +428,7 @@ def main():
         g.node(name, mesh, at=at)
         if name in beds:
             foot, reach, height, count = beds[name]
-            bed = [(B.sand(reach, height, foot, 100 + k), sand_m), (join(B.stones(count, foot, reach, height, 100 + k)), coral)]
+            bed = [(B.sand(reach, height, foot, 100 + k), sand_m), (join(B.stones(count, foot, reach, height, 100 + k)), stone_m)]
             both = g.node(f"{name}_bed", at=(at[0], 0, at[2] + 2.8))
             g.node(f"{name}_of_bed", mesh, parent=both)
             g.node(f"{name}_sand", g.mesh(f"{name}_sand", bed), parent=both)

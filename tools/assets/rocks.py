@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+import detail
 import noise as N
 from glb import Glb
 from mesh import box_uv, Part, shade
@@ -34,9 +35,11 @@ def rock(kind, level):
         1
         + 0.16 * N.fbm3(v, 7 + kind, 1.6, 3)
         + 0.05 * N.fbm3(v, 17 + kind, 6, 3)
-        - 0.10 * np.abs(N.value3(v, 27 + kind, 3))
+        - 0.10 * (np.sqrt(N.value3(v, 27 + kind, 3) ** 2 + 0.012) - 0.11)  # gullies with a round bottom
         + 0.045 * strata
     )
+    if level > 4:  # what coarser ones cannot show
+        r *= 1 + 0.010 * N.fbm3(v, 57 + kind, 14, 2) - 0.014 * np.maximum(N.value3(v, 67 + kind, 9), 0)
     p = v * r[:, None] * np.array(SHAPES[kind])
     p[:, 1] += SHAPES[kind][1] * 0.55
     part = shade(Part(p, f), 55)
@@ -74,6 +77,7 @@ def fracture(n, count, seed, slope, step, warp):
 
 
 TILE = 1.2  # metres that the texture covers on rocks
+DETAIL_REPEATS = 10.7  # in it: every 11 cm, of a copy three times as large every 34 cm
 
 
 def texture(n=1024, tile=TILE):
@@ -117,15 +121,19 @@ def texture(n=1024, tile=TILE):
 def material(g, n=1024):
     c, mr, nm = texture(n)
     return g.material(
-        "rock", base=g.texture("rock_color", c, 74), normal=g.texture("rock_normal", nm, 62), rough=0.88
+        "rock",
+        base=g.texture("rock_color", c, 74),
+        normal=g.texture("rock_normal", nm, 62),
+        rough=0.88,
+        detail=(g.texture("rock_detail", detail.rock(), 78), DETAIL_REPEATS),
     )
 
 
 def main():
-    g = Glb("rocks")
+    g = Glb("rocks", packed=True)
     m = material(g)
     for k in range(3):
-        g.node(f"rock_{k}", g.mesh(f"rock_{k}", [(rock(k, 4), m)]), at=(2.2 * (k - 1), 0, 0))
+        g.node(f"rock_{k}", g.mesh(f"rock_{k}", [(rock(k, 5 if k == 0 else 4), m)]), at=(2.2 * (k - 1), 0, 0))
     g.save(OUT / "rocks.glb")
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import noise as N
+import detail
 import rocks
 from glb import Glb, qmul, quat
 from mesh import Part
@@ -199,10 +200,15 @@ def scatter():
     return out
 
 
+def grains(g):
+    """The sand's detail texture and how often it repeats in a tile."""
+    return g.texture("sand_detail", detail.sand(), 82), TILE / detail.SAND_TILE
+
+
 def main():
-    g = Glb("seabed")
+    g = Glb("seabed", packed=True)
     c, mr, n = sand()
-    m = g.material("sand", base=g.texture("sand_color", c, 72), normal=g.texture("sand_normal", n, 70), rough=0.92)
+    m = g.material("sand", base=g.texture("sand_color", c, 72), normal=g.texture("sand_normal", n, 70), rough=0.92, detail=grains(g))
     g.node("sand", g.mesh("sand", [(bed(), m)]))
     m_rock = rocks.material(g, 512)
     meshes = {f"rock_{k}": g.mesh(f"rock_{k}", [(rocks.rock(k, 3), m_rock)]) for k in range(3)}

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+import fish_skin
 import fish_swim
 import noise as N
 import sdf as S
@@ -248,21 +249,15 @@ def fish():
     return shade(join([p, p.mirrored()]), 75), shade(join(thin), 60)
 
 
-def fish_texture(n=128, m=256):
+def fish_texture(n=256, m=512):
+    """Colour and normals of a side, 0.25 by 0.11 m."""
     v = ((np.arange(n) + 0.5) / n)[:, None] * np.ones((1, m))
     u = ((np.arange(m) + 0.5) / m)[None, :] * np.ones((n, 1))
-    f = N.spectral(n, 3, 0.6, 10, m=m)
     col = N.mix(N.flat(n, (0.12, 0.24, 0.35), m), (0.74, 0.77, 0.76), N.smooth(0.26, 0.66, v))
     col = N.mix(col, (0.72, 0.58, 0.12), 0.8 * N.smooth(0.055, 0.03, np.abs(v - 0.40)))
     col = N.mix(col, (0.62, 0.50, 0.15), 0.8 * N.smooth(0.84, 0.92, u))
-    scale = np.cos(m * 0.9 * u + 1.6 * np.cos(n * 0.9 * v)) * N.smooth(0.16, 0.24, u) * N.smooth(0.86, 0.78, u)  # rows of scales
-    col *= (1 + 0.05 * f + 0.10 * scale - 0.35 * N.smooth(0.72, 0.98, v))[..., None]
-    r = np.hypot((u - 0.115) * 0.25, (v - 0.38) * 0.075)
-    col = N.mix(col, (0.9, 0.88, 0.80), N.smooth(0.0056, 0.0046, r))
-    col = N.mix(col, (0.02, 0.02, 0.02), N.smooth(0.0036, 0.0028, r))
-    gill = N.smooth(0.005, 0.002, np.abs(np.hypot((u - 0.10) * 0.25, (v - 0.5) * 0.09) - 0.028)) * (u > 0.17)
-    col = N.mix(col, (0.25, 0.28, 0.30), 0.25 * gill)
-    return np.clip(col, 0, 1)
+    col *= (1 - 0.35 * N.smooth(0.72, 0.98, v))[..., None]
+    return fish_skin.dressed(col, length=0.25, girth=0.11, pitch=0.0052, eye=(0.115, 0.38), eye_r=0.0062, iris=(0.74, 0.72, 0.62), tail=0.84)
 
 
 def main():
@@ -287,10 +282,10 @@ def main():
         g.node(f"coral_{k}", g.mesh(f"coral_{k}", [(coral(k), m)]), at=(1.3 * (k - 1), 0, 0))
     g.save(OUT / "corals.glb")
     g = Glb("fish")
-    b = g.texture("fish_color", fish_texture(), 88)
-    m_b, m_f = g.material("fish", base=b, rough=0.35, metal=0.15), g.material(
-        "fin", (0.9, 0.9, 0.85, 1), base=b, rough=0.5, double=True
-    )
+    color, bumps = fish_texture()
+    b = g.texture("fish_color", color, 82)
+    m_b = g.material("fish", base=b, rough=0.32, metal=0.3, normal=g.texture("fish_normal", bumps, 72))
+    m_f = g.material("fin", (0.9, 0.9, 0.85, 1), base=b, rough=0.5, double=True, thin=0.5)
     body, thin = fish()
     fish_swim.swim(g, [fish_swim.swimmer(g, "fish", [(body, m_b), (thin, m_f)], 0.25, (0, 0, 0))])
     g.save(OUT / "fish.glb")

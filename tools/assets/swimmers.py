@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+import fish_skin
 import fish_swim
 import noise as N
 from glb import Glb, qmul, quat
@@ -407,6 +408,7 @@ def rays(rgb, root, outer):
     """
     a, b = (q_list([q if len(q) == 3 else (0.0, *q) for q in edge], len(outer)) for edge in (root, outer))
     n = len(b)
+    b = b + np.outer(0.04 * np.linalg.norm(b - a, axis=1) * (-1.0) ** np.arange(n), [1, 0, 0])  # pleated
     v, k = np.linspace(0.0, 1.0, n), np.arange(n - 1)
     tri = np.concatenate([np.stack([k, k + n, k + n + 1], 1), np.stack([k, k + n + 1, k + 1], 1)])
     uv = np.concatenate([np.column_stack([0 * v + u, v]) for u in (0.02, 0.98)])
@@ -420,15 +422,19 @@ def q_list(points, n):
     return np.column_stack([np.interp(t, np.arange(len(p)), p[:, i]) for i in range(p.shape[1])])
 
 
-def ray_picture(n=64, count=14):
+def ray_picture(n=128, count=14):
     """Dark rays that fork outwards on a clear membrane, which hangs back between their tips; RGBA."""
     v = ((np.arange(n) + 0.5) / n)[:, None] * np.ones((1, n))
     u = ((np.arange(n) + 0.5) / n)[None, :] * np.ones((n, 1))
     one = np.abs((v * count) % 1 - 0.5) * 2  # 0 on a ray
     two = np.abs((v * count * 2 + 0.5) % 1 - 0.5) * 2
-    line = N.smooth(0.55, 0.15, N.mix(one, np.minimum(1, two + 0.15), N.smooth(0.45, 0.7, u)))
-    tone = 0.86 - 0.36 * line * (1 - 0.5 * u) + 0.10 * N.smooth(0.80, 0.98, u) - 0.25 * N.smooth(0.16, 0.0, u)
-    return np.dstack([np.clip(tone, 0, 1)] * 3 + [N.smooth(0.99, 0.96, u + 0.10 * one)])
+    line = N.smooth(0.46, 0.14, N.mix(one, np.minimum(1, two + 0.15), N.smooth(0.45, 0.7, u)))
+    joints = 0.5 + 0.5 * np.cos(2 * np.pi * 26 * u)
+    veins = np.abs(N.spectral(n, 5, 1.6, 6, stretch=(0.6, 1.6)))
+    tone = 0.94 - (0.46 + 0.12 * joints) * line * (1 - 0.4 * u) - 0.06 * veins * (1 - line) - 0.30 * N.smooth(0.18, 0.0, u)
+    tone = tone + 0.10 * N.smooth(0.70, 0.98, u)
+    frayed = u + 0.13 * one + 0.02 * N.spectral(n, 6, 1.0, 4)
+    return np.dstack([np.clip(tone, 0, 1)] * 3 + [N.smooth(0.99, 0.96, frayed)])
 
 
 def fish_picture(back, flank, belly, marks, n=64, m=128):
@@ -438,12 +444,7 @@ def fish_picture(back, flank, belly, marks, n=64, m=128):
     col = N.mix(N.flat(n, back, m), flank, N.smooth(0.22, 0.42, v))
     col = N.mix(col, belly, N.smooth(0.60, 0.85, v))
     col = marks(col, u, v)
-    scales = 0.5 + 0.5 * np.cos(u * m * 0.9) * np.cos(v * n * 0.9)
-    col = col * (1 + 0.05 * f + 0.07 * (scales - 0.5))[..., None]
-    r = np.hypot((u - 0.09) * 2.6, v - 0.40)
-    col = N.mix(col, (0.80, 0.74, 0.50), N.smooth(0.085, 0.07, r))
-    col = N.mix(col, (0.01, 0.01, 0.01), N.smooth(0.055, 0.045, r))
-    return np.clip(col, 0, 1)
+    return np.clip(col * (1 + 0.03 * f)[..., None], 0, 1)
 
 
 def school_fish():
@@ -451,9 +452,13 @@ def school_fish():
 
     spines = []
 
-    def add(name, parts, picture, at, rough, m_f=None, length=None):
-        b = g.texture(f"{name}_color", picture, 84)
-        m_b = g.material(f"{name}_body", base=b, rough=rough)
+    def add(name, parts, picture, at, rough, m_f=None, length=None, skin=None):
+        bumps = None
+        if skin:
+            picture, bumps = fish_skin.dressed(picture, **skin)
+            bumps = g.texture(f"{name}_normal", bumps, 72)
+        b = g.texture(f"{name}_color", picture, 82)
+        m_b = g.material(f"{name}_body", base=b, rough=rough, metal=0.25 if skin else 0.0, normal=bumps)
         if m_f is None:
             m_f = g.material(f"{name}_fin", base=b, rough=0.6, double=True)
         prims = [(shade(parts[0], 80), m_b), (shade(join(parts[1:]), 80), m_f)]
@@ -489,7 +494,8 @@ def school_fish():
         snapper += [rays(gold, [(way * 0.021, -0.008, -0.086), (way * 0.022, -0.024, -0.082)], [(way * 0.036, -0.006, -0.030), (way * 0.046, -0.018, -0.024), (way * 0.048, -0.030, -0.030), (way * 0.040, -0.038, -0.046), (way * 0.028, -0.034, -0.066)]),
                     rays(gold, [(way * 0.008, -0.047, -0.075), (way * 0.006, -0.049, -0.055)], [(way * 0.022, -0.070, -0.052), (way * 0.020, -0.074, -0.036), (way * 0.010, -0.064, -0.028)])]
     bands = lambda col, u, v: N.mix(col, (0.16, 0.34, 0.50), 0.8 * sum(N.smooth(0.022, 0.012, np.abs(v - b)) for b in (0.26, 0.40, 0.54)) * N.smooth(0.1, 0.16, u))
-    add("snapper", snapper, fish_picture((0.52, 0.40, 0.10), (0.72, 0.56, 0.14), (0.66, 0.60, 0.46), bands), (0, 0, 0), 0.45, m_rays, 0.32)
+    add("snapper", snapper, fish_picture((0.52, 0.40, 0.10), (0.72, 0.56, 0.14), (0.72, 0.67, 0.56), bands, 256, 512), (0, 0, 0), 0.38, m_rays, 0.32,
+        dict(length=0.31, girth=0.15, pitch=0.0068, eye=(0.100, 0.36), eye_r=0.0088, iris=(0.80, 0.66, 0.34)))
     zs = [-0.062, -0.057, -0.045, -0.026, -0.004, 0.018, 0.036, 0.046]
     damsel = [fish_body(zs, [0.002, 0.012, 0.024, 0.034, 0.037, 0.031, 0.017, 0.009], [0.001, 0.005, 0.009, 0.012, 0.012, 0.009, 0.005, 0.002], 8),
               rays(yellow, [(0.009, 0.040), (0.010, 0.045), (-0.010, 0.045), (-0.009, 0.040)], [(0.029, 0.069), (0.018, 0.063), (0.008, 0.058), (0.0, 0.056), (-0.008, 0.058), (-0.018, 0.063), (-0.029, 0.069)]),
@@ -499,7 +505,8 @@ def school_fish():
         damsel += [rays(blue, [(way * 0.0105, -0.001, -0.030), (way * 0.011, -0.011, -0.029)], [(way * 0.020, 0.002, -0.008), (way * 0.025, -0.006, -0.004), (way * 0.024, -0.014, -0.009), (way * 0.017, -0.017, -0.020)]),
                    rays(blue, [(way * 0.004, -0.033, -0.026), (way * 0.003, -0.035, -0.015)], [(way * 0.010, -0.052, -0.010), (way * 0.009, -0.055, 0.000), (way * 0.004, -0.044, 0.000)])]
     tail = lambda col, u, v: N.mix(col, (0.85, 0.66, 0.10), N.smooth(0.72, 0.80, u + 0.25 * (v - 0.4)))
-    add("damsel", damsel, fish_picture((0.05, 0.12, 0.36), (0.10, 0.24, 0.58), (0.20, 0.36, 0.62), tail), (0.4, 0, 0), 0.5, m_rays, 0.128)
+    add("damsel", damsel, fish_picture((0.05, 0.12, 0.36), (0.10, 0.24, 0.58), (0.20, 0.36, 0.62), tail, 128, 256), (0.4, 0, 0), 0.42, m_rays, 0.128,
+        dict(length=0.124, girth=0.085, pitch=0.0040, eye=(0.115, 0.36), eye_r=0.0050, iris=(0.45, 0.42, 0.34)))
     fish_swim.swim(g, spines)
     g.save(OUT / "school_fish.glb")
 
