@@ -81,7 +81,7 @@ class Glb:
     def texture(self, name, image, quality=88):
         """image: float 0..1 array [h, w, 3 or 4], row 0 on top; 4 channels go to PNG.
 
-        Colours are filtered between two mip levels; normals and roughness, whose steps from level to
+        Colours are filtered between two mip levels; normals, roughness and detail, whose steps from level to
         level nobody sees through water, take the nearest: a fifth of a software rasterizer's G-buffer.
         """
         a = np.round(np.clip(image, 0, 1) * 255).astype(np.uint8)
@@ -96,7 +96,7 @@ class Glb:
         wrap = {"magFilter": 9729, "wrapS": 10497, "wrapT": 10497}
         d.setdefault("samplers", [{**wrap, "minFilter": 9987}, {**wrap, "minFilter": 9985}])
         d.setdefault("images", []).append({"name": name, "bufferView": self._view(buf.getvalue()), "mimeType": mime})
-        d.setdefault("textures", []).append({"sampler": 0 if name.endswith(("_color", "_detail")) else 1, "source": len(d["images"]) - 1, "name": name})
+        d.setdefault("textures", []).append({"sampler": 0 if name.endswith("_color") else 1, "source": len(d["images"]) - 1, "name": name})
         return len(d["textures"]) - 1
 
     def extend(self, m, name, value):
