@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t kRtpHeader = 12;
 constexpr float kScale = 32768.0F;
+constexpr std::uint8_t kFirstAssigned = 96;  // RFC 3551: a session says what 96 to 127 are
 
 }  // namespace
 
@@ -19,6 +20,12 @@ Result<RtpPacket> decode_rtp(Bytes bytes) {
     return refusal(kWhere, fmt::format("{} bytes", bytes.size()), "12 or more");
   const auto first = std::to_integer<unsigned>(bytes[0]);
   if (first >> 6 != 2) return refusal(kWhere, fmt::format("version {}", first >> 6), "2");
+  const auto type = static_cast<std::uint8_t>(std::to_integer<unsigned>(bytes[1]) & 127);
+  if (type != kRtpL16 && type < kFirstAssigned) {
+    return failure(ErrorCode::kUnsupported,
+                   "RTP: found payload type {}; accepted: 11 and 96 to 127, 16 bits in one channel",
+                   type);
+  }
   std::size_t begin = kRtpHeader + 4 * (first & 15);
   std::size_t end = bytes.size();
   if ((first & 0x10) != 0) {  // a header extension, with its length in words
@@ -35,7 +42,7 @@ Result<RtpPacket> decode_rtp(Bytes bytes) {
     return refusal(kWhere, fmt::format("{} bytes of sound", begin < end ? end - begin : 0),
                    "2 for each sample, at least 1 sample");
   RtpPacket out;
-  out.payload_type = static_cast<std::uint8_t>(std::to_integer<unsigned>(bytes[1]) & 127);
+  out.payload_type = type;
   out.sequence = big_endian<std::uint16_t>(bytes, 2);
   out.timestamp = big_endian<std::uint32_t>(bytes, 4);
   out.ssrc = big_endian<std::uint32_t>(bytes, 8);

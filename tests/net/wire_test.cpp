@@ -132,6 +132,22 @@ TEST(Rtp, SamplesComeBackAndExtensionsAreSkipped) {
   EXPECT_EQ(again.samples, packet.samples);
 }
 
+// RFC 3551: 0 is PCMU, 8 PCMA, 10 L16 of two channels, 11 of one; a session assigns 96 to 127. 72
+// is what a report (RTCP, type 200) looks like.
+TEST(Rtp, SoundOfOtherKindsIsRefusedByItsPayloadType) {
+  for (int type = 0; type < 128; ++type) {
+    const auto packet =
+        decode_rtp(encode_rtp({static_cast<std::uint8_t>(type), 1, 2, 3, {0.5F, 0.5F}}));
+    EXPECT_EQ(packet.ok(), type == 11 || type >= 96) << type;
+    if (packet.ok()) continue;
+    EXPECT_EQ(packet.error().code, ErrorCode::kUnsupported);
+    EXPECT_EQ(packet.error().message,
+              fmt::format("RTP: found payload type {}; accepted: 11 and 96 to 127, 16 bits in one "
+                          "channel",
+                          type));
+  }
+}
+
 TEST(Rtp, LengthsThatLieAreRefused) {
   const auto good = encode_rtp({96, 1, 2, 3, {0.5F, 0.5F}});
   for (std::size_t size = 0; size < 14; ++size)

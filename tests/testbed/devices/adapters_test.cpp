@@ -423,6 +423,94 @@ TEST(MicrophoneAdapter, BreathIsFoundOverALossyLink) {
   expect_adds_up(microphone.counts());
 }
 
+// A breath of 48 kHz, taken as one of 16 kHz, would be three times as slow. The other way round the
+// first ten seconds of sound take 30.
+TEST(MicrophoneAdapter, SoundOfAnotherRateIsToldAndGivesNoBreath) {
+  for (const auto& [sent_hz, expected_hz] : {std::pair(48'000.0, 16'000.0),
+                                             {44'100.0, 48'000.0},
+                                             {22'050.0, 16'000.0},
+                                             {16'000.0, 48'000.0},
+                                             {192'000.0, 8'000.0}}) {
+    SCOPED_TRACE(fmt::format("{} as {}", sent_hz, expected_hz));
+    Bench bench("mic = \"microphone udp\"\n");
+    MicrophoneAdapter microphone(expected_hz);
+    SimulatedDeviceOptions options;
+    options.rate_hz = sent_hz;
+    const auto samples = run_device("microphone", {.breath_bpm = 15.0}, 41.0,
+                                    {.jitter_s = 0.02, .loss = 0.02}, microphone, bench, options);
+    EXPECT_TRUE(samples.empty());
+    EXPECT_EQ(microphone.trouble(),
+              fmt::format("it sends {:g} samples a second, not {:g}, the source's rate_hz", sent_hz,
+                          expected_hz));
+    EXPECT_GT(microphone.counts().unused, microphone.counts().used);
+    expect_adds_up(microphone.counts());
+  }
+}
+
+// A link that stands still for a second, twice a minute, and whose packets come late together.
+TEST(MicrophoneAdapter, AStalledLinkIsNotAnotherRate) {
+  Bench bench("mic = \"microphone udp\"\n");
+  MicrophoneAdapter microphone(16'000.0);
+  const auto device = simulated_device("microphone", {});
+  std::vector<std::vector<std::byte>> held;
+  std::uint64_t breaths = 0;
+  for (TimeNs now = 4 * kMillisecond_ns; now < 300 * kSecond_ns; now += 4 * kMillisecond_ns) {
+    device->run({.breath_bpm = 15.0}, now,
+                [&](std::vector<std::byte> bytes, TimeNs) { held.push_back(std::move(bytes)); });
+    if (now % (31 * kSecond_ns) > 30 * kSecond_ns) continue;
+    for (const auto& bytes : held) microphone.take(bytes, false, now, bench.out);
+    held.clear();
+    microphone.tick(now, bench.out);
+    breaths += bench.samples().size();
+    ASSERT_EQ(microphone.trouble(), "") << now;
+  }
+  EXPECT_GE(breaths, 29u);
+  EXPECT_EQ(microphone.counts().unused, 0u);
+}
+
+TEST(MicrophoneAdapter, SoundOfOtherFormsIsToldAndGivesNoBreath) {
+  // Two channels, 24 bits, 8 bits under a payload type that is assigned.
+  for (const auto& [ratio, words] : {std::pair(2.0, "2.0"), {1.5, "1.5"}, {0.5, "0.5"}}) {
+    Bench bench("mic = \"microphone udp\"\n");
+    MicrophoneAdapter microphone(16'000.0);
+    for (std::uint32_t i = 0; i < 1500; ++i) {
+      net::RtpPacket packet{.sequence = static_cast<std::uint16_t>(i), .timestamp = 320 * i};
+      packet.samples.assign(static_cast<std::size_t>(320 * ratio), 0.1F);
+      microphone.take(net::encode_rtp(packet), false, i * 20 * kMillisecond_ns, bench.out);
+    }
+    EXPECT_EQ(microphone.trouble(),
+              fmt::format("its packets have {} times the samples that their timestamps count; "
+                          "used: 16 bits in one channel",
+                          words));
+    EXPECT_TRUE(bench.samples().empty());
+  }
+  // Payload types; the reason disappears with the next packet of a known kind.
+  struct Case {
+    std::uint8_t type;
+    double rate_hz;
+    const char* trouble;
+  };
+  for (const Case& one :
+       {Case{0, 8'000.0,
+             "RTP: found payload type 0; accepted: 11 and 96 to 127, 16 bits in one "
+             "channel"},
+        {11, 16'000.0,
+         "payload type 11 has 44100 samples a second, not 16000, the source's "
+         "rate_hz"},
+        {11, 44'100.0, ""},
+        {96, 16'000.0, ""}}) {
+    Bench bench("mic = \"microphone udp\"\n");
+    MicrophoneAdapter microphone(one.rate_hz);
+    for (std::uint32_t i = 0; i < 100; ++i)
+      microphone.take(net::encode_rtp({one.type, static_cast<std::uint16_t>(i), 160 * i, 1,
+                                       std::vector<float>(160, 0.1F)}),
+                      false, i * 20 * kMillisecond_ns, bench.out);
+    EXPECT_EQ(microphone.trouble(), one.trouble);
+    EXPECT_EQ(microphone.counts().unused, *one.trouble ? 100u : 0u);
+    expect_adds_up(microphone.counts());
+  }
+}
+
 // Packets of each device, out of order, repeated, cut, with wrong bits, and random ones: all are
 // counted once, and what comes out is what the inbox takes. A million and a half where the test is
 // thorough.
