@@ -20,7 +20,7 @@ namespace neritic::net {
 namespace {
 
 constexpr std::size_t kBatch = 64, kStreamRead = 64 << 10;
-constexpr int kWait_ms = 1000;
+constexpr int kWait_ms = 1000, kProbes = 3, kMostCallers = 16;
 constexpr TimeNs kRetry_ns = 1'000'000'000;
 // A stamp that is older says that the clock was set.
 constexpr TimeNs kMostWaited_ns = 1'000'000'000;
@@ -83,6 +83,19 @@ void set(const Descriptor& socket, int level, int option, int value) {
 bool wait_for(const Descriptor& socket, short events) {
   pollfd wanted{socket.get(), events, 0};
   return ::poll(&wanted, 1, kWait_ms) == 1;
+}
+
+// A peer that is gone without a word is asked after 3 s of silence, three times.
+void keep_alive(const Descriptor& socket) {
+  set(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
+  set(socket, IPPROTO_TCP, TCP_KEEPIDLE, TcpReceiver::kKeepAlive_s - kProbes);
+  set(socket, IPPROTO_TCP, TCP_KEEPINTVL, 1);
+  set(socket, IPPROTO_TCP, TCP_KEEPCNT, kProbes);
+}
+
+// Whether the stream of which recv() gave that is over.
+bool ended(ssize_t got) {
+  return got == 0 || (got < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR);
 }
 
 int pending_error(const Descriptor& socket) {
@@ -199,41 +212,92 @@ Result<TcpReceiver> TcpReceiver::open(const Address& address, Way way) {
   return out;
 }
 
-// Whether there is a stream that can be read.
-bool TcpReceiver::attempt() {
-  if (stream_.open()) {
-    if (!connecting_) return true;
-    pollfd wanted{stream_.get(), POLLOUT, 0};
-    if (::poll(&wanted, 1, 0) != 1) return false;
-    connecting_ = false;
-    if (pending_error(stream_) == 0) return true;
-    stream_ = Descriptor();
-    return false;
+// Takes all who called; the newest waits.
+void TcpReceiver::accept() {
+  for (int i = 0; i < kMostCallers; ++i) {
+    sockaddr_in from{};
+    socklen_t size = sizeof from;
+    Descriptor caller(::accept4(listener_.get(), reinterpret_cast<sockaddr*>(&from), &size,
+                                SOCK_NONBLOCK | SOCK_CLOEXEC));
+    if (!caller.open()) return;
+    keep_alive(caller);
+    waiting_ = std::move(caller);
+    std::array<char, INET_ADDRSTRLEN> text{};
+    (void)::inet_ntop(AF_INET, &from.sin_addr, text.data(), text.size());
+    waiting_from_ = text.data();
   }
-  if (way_ == Way::kListen) {
-    stream_ =
-        Descriptor(::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
-    return stream_.open();
-  }
-  if (now_ns() < next_attempt_ns_) return false;
-  next_attempt_ns_ = now_ns() + kRetry_ns;
+}
+
+// Bytes of a sender that waits would be old when it is used.
+void TcpReceiver::drop_waiting() {
+  if (!waiting_.open()) return;
+  const ssize_t got = ::recv(waiting_.get(), buffer_.data(), buffer_.size(), MSG_DONTWAIT);
+  if (ended(got)) waiting_ = Descriptor();
+}
+
+bool TcpReceiver::take_waiting() {
+  if (!waiting_.open()) return false;
+  stream_ = std::exchange(waiting_, Descriptor());
+  heard_ns_ = now_ns();
+  return true;
+}
+
+void TcpReceiver::connect_again() {
+  if (now_ns() < next_attempt_ns_) return;
+  heard_ns_ = now_ns();
+  next_attempt_ns_ = heard_ns_ + kRetry_ns;
   stream_ = new_socket(SOCK_STREAM);
+  keep_alive(stream_);
   const sockaddr_in to = system_address(address_);
   const int status = ::connect(stream_.get(), reinterpret_cast<const sockaddr*>(&to), sizeof to);
   connecting_ = status != 0 && errno == EINPROGRESS;
   if (status != 0 && !connecting_) stream_ = Descriptor();
-  return status == 0;
+}
+
+// Whether there is a stream that can be read.
+bool TcpReceiver::attempt() {
+  if (!stream_.open()) {
+    if (way_ == Way::kListen) return take_waiting();
+    connect_again();
+    return connected();
+  }
+  if (!connecting_) return true;
+  pollfd wanted{stream_.get(), POLLOUT, 0};
+  if (::poll(&wanted, 1, 0) != 1) {
+    if (now_ns() - heard_ns_ < kReconnect_ns) return false;
+  } else if (pending_error(stream_) == 0) {
+    connecting_ = false;
+    heard_ns_ = now_ns();
+    return true;
+  }
+  connecting_ = false;
+  stream_ = Descriptor();
+  return false;
+}
+
+// False: the stream ended, or another one has to take its place.
+bool TcpReceiver::read(const Received& received) {
+  const ssize_t got = ::recv(stream_.get(), buffer_.data(), buffer_.size(), MSG_DONTWAIT);
+  if (got > 0) {
+    heard_ns_ = now_ns();
+    received(Bytes(buffer_).first(static_cast<std::size_t>(got)), false);
+    return true;
+  }
+  const bool over = ended(got);
+  const TimeNs silent_ns = now_ns() - heard_ns_;
+  const bool stalled = way_ == Way::kListen ? waiting_.open() && silent_ns >= kReplaced_ns
+                                            : silent_ns >= kReconnect_ns;
+  if (!over && !stalled) return true;
+  stream_ = Descriptor();
+  received({}, true);
+  return false;
 }
 
 void TcpReceiver::receive(const Received& received) {
+  if (way_ == Way::kListen) accept();
   if (!attempt()) return;
-  const ssize_t got = ::recv(stream_.get(), buffer_.data(), buffer_.size(), MSG_DONTWAIT);
-  if (got > 0) {
-    received(Bytes(buffer_).first(static_cast<std::size_t>(got)), false);
-  } else if (got == 0 || (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)) {
-    stream_ = Descriptor();
-    received({}, true);
-  }
+  if (!read(received) && attempt()) (void)read(received);
+  drop_waiting();
 }
 
 Result<TcpSender> TcpSender::connect(const Address& to) {

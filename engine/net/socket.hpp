@@ -74,29 +74,45 @@ class UdpSender {
   Address to_;
 };
 
-// The receiving end of one TCP stream at a time: waits for a sender (listen), or goes to one
-// (connect) and tries again each second.
+// The receiving end of one TCP stream at a time: waits for senders (listen), or goes to one
+// (connect). A listener uses the first sender. A later one waits, its bytes dropped, and replaces
+// the first as soon as that one ends or was silent for kReplaced_ns; of several that wait the
+// newest does, and the others are closed. A stream that was connected to and is silent for
+// kReconnect_ns is closed and connected again, at most once a second. A peer that does not answer
+// the kernel any more is found by keepalives within kKeepAlive_s.
 class TcpReceiver {
  public:
   enum class Way { kListen, kConnect };
   // kIo names the address and the reason.
   static Result<TcpReceiver> open(const Address& address, Way way);
-  // Gives all bytes that wait, at most 64 KiB at a time, in order. An end of the stream gives no
-  // bytes and `cut`. Never waits.
+  // Gives all bytes that wait, at most 64 KiB at a time, in order. An end of the stream, or its
+  // replacement by another, gives no bytes and `cut`. Never waits.
   void receive(const Received& received);
   bool connected() const { return stream_.open() && !connecting_; }
+  // The sender that waits while another one is used, as "192.168.1.20"; empty: none does.
+  std::string_view waiting() const { return waiting_.open() ? waiting_from_ : std::string_view(); }
   // The socket that says next that something came; -1: none before the next attempt.
   int descriptor() const { return stream_.open() ? stream_.get() : listener_.get(); }
   // Whether it waits for a connection to become writable.
   bool connecting() const { return connecting_; }
 
+  static constexpr TimeNs kReplaced_ns = 1'000'000'000, kReconnect_ns = 3'000'000'000;
+  static constexpr int kKeepAlive_s = 6;
+
  private:
   TcpReceiver(const Address& address, Way way) : address_(address), way_(way) {}
+  void accept();
   bool attempt();
+  bool take_waiting();
+  void connect_again();
+  bool read(const Received& received);
+  void drop_waiting();
 
   Address address_;
   Way way_;
-  Descriptor listener_, stream_;
+  Descriptor listener_, stream_, waiting_;
+  std::string waiting_from_;
+  TimeNs heard_ns_ = 0;  // the newest bytes of the stream, or its beginning
   bool connecting_ = false;
   std::int64_t next_attempt_ns_ = 0;
   std::vector<std::byte> buffer_;
@@ -107,7 +123,8 @@ class TcpSender {
  public:
   // Connects, at most a second long. kIo names the address and the reason.
   static Result<TcpSender> connect(const Address& to);
-  // False: the stream broke. Waits while the receiver does not read, at most a second.
+  // False: the stream broke, maybe within these bytes, and is of no more use. Waits while the
+  // receiver does not read, at most a second.
   bool send(Bytes bytes);
 
  private:

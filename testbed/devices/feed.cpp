@@ -42,7 +42,12 @@ class TcpFeed final : public Feed {
     wait_for(receiver_.descriptor(), receiver_.connecting() ? POLLOUT : POLLIN, wait_ms);
     receiver_.receive(received);
   }
-  std::string trouble() const override { return receiver_.connected() ? "" : "not connected"; }
+  std::string trouble() const override {
+    if (!receiver_.connected()) return "not connected";
+    if (receiver_.waiting().empty()) return "";
+    return fmt::format("a second sender, at {}, waits until the first one is silent for a second",
+                       receiver_.waiting());
+  }
 
  private:
   net::TcpReceiver receiver_;

@@ -26,6 +26,32 @@ Address address_of(const scene::DeviceSource& source, const LabOptions& options)
   return to;
 }
 
+// A stream to a device's port. One that broke is connected again, at most each kConnectEvery_ns,
+// since an attempt may wait for a second; the packets until then are lost.
+class Stream {
+ public:
+  static Result<Stream> open(const Address& to) {
+    Stream out(to);
+    NERITIC_TRY(out.sender_, net::TcpSender::connect(to));
+    return out;
+  }
+  bool send(net::Bytes bytes) {
+    if (!sender_ && now_ns() >= next_ns_) {
+      next_ns_ = now_ns() + kConnectEvery_ns;
+      if (auto again = net::TcpSender::connect(to_); again.ok()) sender_ = std::move(again).value();
+    }
+    if (sender_ && !sender_->send(bytes)) sender_.reset();
+    return sender_.has_value();
+  }
+
+ private:
+  static constexpr TimeNs kConnectEvery_ns = 3 * kSecond_ns;
+  explicit Stream(const Address& to) : to_(to) {}
+  Address to_;
+  std::optional<net::TcpSender> sender_;
+  TimeNs next_ns_ = 0;
+};
+
 Result<std::function<bool(net::Bytes)>> sender_to(const scene::DeviceSource& source,
                                                   const Address& to) {
   using ToWire = std::function<bool(net::Bytes)>;
@@ -35,8 +61,8 @@ Result<std::function<bool(net::Bytes)>> sender_to(const scene::DeviceSource& sou
     return ToWire([kept](net::Bytes bytes) { return kept->send(bytes); });
   }
   if (source.by == "tcp") {
-    NERITIC_TRY(net::TcpSender sender, net::TcpSender::connect(to));
-    const auto kept = std::make_shared<net::TcpSender>(std::move(sender));
+    NERITIC_TRY(Stream stream, Stream::open(to));
+    const auto kept = std::make_shared<Stream>(std::move(stream));
     return ToWire([kept](net::Bytes bytes) { return kept->send(bytes); });
   }
   return refusal(fmt::format("source {}", source.name),

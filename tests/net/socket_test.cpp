@@ -1,6 +1,8 @@
 #include "engine/net/socket.hpp"
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 
 #include <chrono>
 #include <thread>
@@ -108,6 +110,120 @@ TEST(Udp, ATakenPortIsOneLine) {
   EXPECT_NE(second.error().message.find(fmt::format("127.0.0.1:{}: cannot listen", first.port())),
             std::string::npos)
       << second.error().message;
+}
+
+// A port of this machine that nobody has.
+Address free_tcp() {
+  return {Transport::kTcp, 0x7f000001, UdpReceiver::bind({.port = 0})->port()};
+}
+
+// Polls the receiver; true: done before `ms` went by.
+template <class Done>
+bool receive_until(TcpReceiver& receiver, const Received& take, int ms, Done done) {
+  for (const TimeNs end_ns = now_ns() + TimeNs{ms} * 1'000'000; now_ns() < end_ns;) {
+    if (done()) return true;
+    receiver.receive(take);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return false;
+}
+
+TEST(Tcp, ASenderThatStallsGivesWayToTheNextOne) {
+  const Address address = free_tcp();
+  auto receiver = TcpReceiver::open(address, TcpReceiver::Way::kListen).value();
+  std::vector<int> got;
+  int ends = 0;
+  const auto take = [&](Bytes bytes, bool end) {
+    for (const std::byte byte : bytes) got.push_back(std::to_integer<int>(byte));
+    ends += end;
+  };
+  auto first = TcpSender::connect(address).value();
+  ASSERT_TRUE(first.send(packet(1, 1)));
+  ASSERT_TRUE(receive_until(receiver, take, 1000, [&] { return got.size() == 1; }));
+  const TimeNs last_ns = now_ns();
+  auto next = TcpSender::connect(address).value();
+  int sent = 1;
+  const bool heard = receive_until(receiver, take, 5000, [&] {
+    EXPECT_TRUE(next.send(packet(1, ++sent)));
+    return got.size() > 1;
+  });
+  ASSERT_TRUE(heard);
+  const double silent_s = 1e-9 * static_cast<double>(now_ns() - last_ns);
+  EXPECT_GE(silent_s, 1.0);
+  EXPECT_LT(silent_s, 1.5);
+  EXPECT_EQ(ends, 1);
+  // What it sent while it waited is not kept.
+  EXPECT_GT(got[1], 20);
+  EXPECT_EQ(receiver.waiting(), "");
+  // The first one is closed.
+  bool closed = false;
+  for (int i = 0; i < 100 && !closed; ++i) closed = !first.send(packet(1, 1));
+  EXPECT_TRUE(closed);
+}
+
+TEST(Tcp, ASenderThatSendsIsNotReplacedAndTheOneThatWaitsIsTold) {
+  const Address address = free_tcp();
+  auto receiver = TcpReceiver::open(address, TcpReceiver::Way::kListen).value();
+  std::vector<int> got;
+  const auto take = [&](Bytes bytes, bool) {
+    for (const std::byte byte : bytes) got.push_back(std::to_integer<int>(byte));
+  };
+  auto first = std::make_unique<TcpSender>(TcpSender::connect(address).value());
+  ASSERT_TRUE(first->send(packet(1, 1)));
+  ASSERT_TRUE(receive_until(receiver, take, 1000, [&] { return !got.empty(); }));
+  auto older = TcpSender::connect(address).value();
+  auto newer = TcpSender::connect(address).value();
+  ASSERT_TRUE(
+      receive_until(receiver, take, 1000, [&] { return receiver.waiting() == "127.0.0.1"; }));
+  for (int i = 0; i < 60; ++i) {
+    EXPECT_TRUE(first->send(packet(1, 1)));
+    (void)older.send(packet(1, 2));
+    EXPECT_TRUE(newer.send(packet(1, 3)));
+    (void)receive_until(receiver, take, 25, [] { return false; });
+  }
+  EXPECT_EQ(std::ranges::count(got, 1), std::ssize(got));
+  EXPECT_FALSE(older.send(packet(1, 2)));  // the newest waits
+  EXPECT_EQ(receiver.waiting(), "127.0.0.1");
+  // No second is waited for where the first one ends.
+  first.reset();
+  EXPECT_TRUE(receive_until(receiver, take, 500, [&] {
+    EXPECT_TRUE(newer.send(packet(1, 3)));
+    return got.back() == 3;
+  }));
+}
+
+// A server whose stream stands still, its socket open.
+TEST(Tcp, AServerThatStallsIsConnectedToAgain) {
+  const Address address = free_tcp();
+  const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in at{};
+  at.sin_family = AF_INET;
+  at.sin_addr.s_addr = htonl(address.ipv4);
+  at.sin_port = htons(address.port);
+  ASSERT_EQ(::bind(listener, reinterpret_cast<const sockaddr*>(&at), sizeof at), 0);
+  ASSERT_EQ(::listen(listener, 4), 0);
+  const Descriptor keeps(listener);
+  auto receiver = TcpReceiver::open(address, TcpReceiver::Way::kConnect).value();
+  int heard = 0, ends = 0;
+  const auto take = [&](Bytes bytes, bool end) {
+    heard += static_cast<int>(bytes.size());
+    ends += end;
+  };
+  receiver.receive(take);
+  const Descriptor first(::accept4(listener, nullptr, nullptr, SOCK_CLOEXEC));
+  ASSERT_EQ(::send(first.get(), "a", 1, 0), 1);
+  ASSERT_TRUE(receive_until(receiver, take, 1000, [&] { return heard == 1; }));
+  const TimeNs last_ns = now_ns();
+  Descriptor second;
+  ASSERT_TRUE(receive_until(receiver, take, 6000, [&] {
+    if (ends == 0) return false;
+    second = Descriptor(::accept4(listener, nullptr, nullptr, SOCK_CLOEXEC));
+    return second.open();
+  }));
+  EXPECT_NEAR(1e-9 * static_cast<double>(now_ns() - last_ns), 3.0, 0.5);
+  ASSERT_EQ(::send(second.get(), "b", 1, 0), 1);
+  EXPECT_TRUE(receive_until(receiver, take, 1000, [&] { return heard == 2; }));
+  EXPECT_EQ(ends, 1);
 }
 
 TEST(Tcp, AStreamArrivesWholeAndItsEndIsTold) {

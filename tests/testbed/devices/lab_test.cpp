@@ -105,6 +105,61 @@ TEST(SimulatedLab, ASuitByTcpSwimsTheSame) {
   EXPECT_GT(lab.group(DiverGroup::kBody).heard, 600u);
 }
 
+// The dive that hears the suit is begun anew meanwhile.
+TEST(SimulatedLab, ASuitByTcpConnectsAgainAfterItsStreamBroke) {
+  const TestDive dive = dive_of(lab_text("suit = \"mxtp tcp 39772\"\n"));
+  const Address& at = dive.scene.sources.at(0).address;
+  const auto listen = [&] {
+    return net::TcpReceiver::open(at, net::TcpReceiver::Way::kListen).value();
+  };
+  std::optional<net::TcpReceiver> receiver(listen());
+  const auto lab = SimulatedLab::create(dive.scene, *dive.world, nullptr,
+                                        [&](std::size_t diver) -> const HumanPhysics& {
+                                          return dive.state().humans()[diver];
+                                        },
+                                        {})
+                       .value();
+  const auto heard_within = [&](double seconds) {
+    bool heard = false;
+    const TimeNs begun_ns = now_ns();
+    for (double t_s = 0.0; t_s < seconds && !heard;
+         t_s = 1e-9 * static_cast<double>(now_ns() - begun_ns)) {
+      EXPECT_TRUE(lab->poll(dive.simulation->inbox(), 1e-9 * static_cast<double>(now_ns())).ok());
+      receiver->receive([&](net::Bytes bytes, bool) { heard = heard || !bytes.empty(); });
+      std::this_thread::sleep_for(std::chrono::milliseconds(4));
+    }
+    return heard;
+  };
+  ASSERT_TRUE(heard_within(2.0));
+  receiver.reset();
+  receiver = listen();
+  EXPECT_TRUE(heard_within(5.0));
+}
+
+TEST(DeviceSource, ASecondSuitAtOnePortOfTcpIsTold) {
+  TestDive dive = dive_of(lab_text("suit = \"mxtp tcp 39773\"\n"));
+  const auto devices =
+      Devices::open(dive.scene, *dive.world, dive.simulation->inbox(), DeviceSource::Pace::kThread)
+          .value();
+  const Address& at = dive.scene.sources.at(0).address;
+  auto first = net::TcpSender::connect(at).value();
+  const std::vector<std::byte> bytes(10);
+  const auto trouble_becomes = [&](std::string_view wanted) {
+    for (int i = 0; i < 500 && devices->health()[0].trouble != wanted; ++i) {
+      EXPECT_TRUE(first.send(bytes));
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_EQ(devices->health()[0].trouble, wanted);
+  };
+  trouble_becomes("");
+  {
+    const auto second = net::TcpSender::connect(at).value();
+    trouble_becomes(
+        "a second sender, at 127.0.0.1, waits until the first one is silent for a second");
+  }
+  trouble_becomes("");
+}
+
 TEST(DeviceSource, ASourceThatDiesIsLostAndTheAutopilotSwims) {
   Lab lab({}, "suit = \"mxtp udp 39768\"\n");
   lab.run(1.0);
