@@ -15,6 +15,8 @@ constexpr TimeNs kEcgCounts = 3 * kSecond_ns;
 // Straps send up to nine at once.
 constexpr std::size_t kMostIntervals = 32;
 constexpr double kLongestGap_s = 3600.0, kRatePeriod_s = 1.0;
+// Half a period late is one too few: packets of Bluetooth jitter by less.
+constexpr double kMissing = 1.5;
 // A strap's clock that falls so far back was set anew, and so was one that leaps.
 constexpr double kSetBack_s = 10.0, kLeap_s = 10.0;
 // The rate counts as nominal until so much was seen, and is that of the last kRateOver_s. Frames
@@ -65,7 +67,7 @@ void StrapAdapter::take_rate(net::Bytes bytes, TimeNs arrived_ns, Outlet& out) {
   for (const std::uint16_t interval : packet->intervals) counted_s += net::kRrUnit_s * interval;
   const bool worn = packet->bpm > 0 && packet->contact.value_or(true);
   // Packets are missing: nobody knows the beats between.
-  if (since_s > 2.0 * kRatePeriod_s) {
+  if (since_s > kMissing * kRatePeriod_s) {
     counts_.lost += static_cast<std::uint64_t>(std::lround(std::min(since_s, 1e6))) - 1;
     if (by_intervals_ && worn && since_s > counted_s) {
       intervals_.skip(std::min(since_s - counted_s, kLongestGap_s));
@@ -141,7 +143,7 @@ void StrapAdapter::take_ecg(net::Bytes bytes, TimeNs arrived_ns, Outlet& out) {
     if (step_s < 0.0 || step_s > kLeap_s) {
       ++counts_.restarts;
       ecg_.reset();
-    } else if (step_s > 1.5 * length_s) {
+    } else if (step_s > kMissing * length_s) {
       counts_.lost += static_cast<std::uint64_t>(std::lround(step_s / length_s - 1.0));
       // Samples that are missing are none, so that no beat is found across the gap.
       ecg_->skip(std::min(step_s - length_s, kLongestGap_s));

@@ -164,6 +164,28 @@ TEST(StrapAdapter, IntervalsThatEndGiveWayToTheRate) {
   EXPECT_EQ(again.gaps, 1u);
 }
 
+// One of three packets is lost, each by itself, and the others come up to 60 ms early or late.
+TEST(StrapAdapter, EachLostPacketIsCountedAndIsAGapOfTheBeats) {
+  Bench bench("strap = \"strap udp\"\n");
+  StrapAdapter strap;
+  std::uint64_t lost = 0;
+  diver::HeartState last;
+  for (int i = 0; i < 300; ++i) {
+    if (i % 3 == 1) {
+      ++lost;
+      continue;
+    }
+    const double off_s = 0.12 * (random_uniform({5, 6, static_cast<std::uint64_t>(i)}, 0) - 0.5);
+    strap.take(bytes_of(std::string("103C0004")), false,
+               static_cast<TimeNs>(1e9 * (10.0 + i + off_s)), bench.out);
+    for (const Sample& sample : bench.samples()) last = std::get<Heart>(sample.payload).state;
+  }
+  EXPECT_EQ(strap.counts().lost, lost);
+  EXPECT_EQ(last.gaps, lost);
+  EXPECT_NEAR(last.time_s, 300.0, 3.0);
+  expect_adds_up(strap.counts());
+}
+
 TEST(StrapAdapter, RatesOfNoHeartAreMalformed) {
   Bench bench("strap = \"strap udp\"\n");
   StrapAdapter strap;
@@ -198,7 +220,7 @@ TEST(StrapAdapter, VectorsGiveRatesAndAStrapThatIsOffIsAGapNotASlowHeart) {
   EXPECT_EQ(strap.counts().repeated, 1u);
   now += 9 * kSecond_ns;
   (void)rate("10480004");
-  EXPECT_EQ(strap.counts().lost, 9u);
+  EXPECT_EQ(strap.counts().lost, 10u);  // one in place of the malformed one
   expect_adds_up(strap.counts());
 }
 
