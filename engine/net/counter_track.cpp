@@ -1,11 +1,33 @@
 #include "engine/net/counter_track.hpp"
 
-namespace neritic::net {
+#include <fmt/format.h>
 
-// From the newest value; a wrap is a small step.
-std::int64_t CounterTrack::step_to(std::uint64_t value) const {
+namespace neritic::net {
+namespace {
+
+constexpr std::int64_t kNear = 2, kLate = 64;
+
+}  // namespace
+
+// A wrap is a small step.
+std::int64_t CounterTrack::step(std::uint64_t from, std::uint64_t to) const {
   const int shift = 64 - bits_;
-  return static_cast<std::int64_t>((value - value_) << shift) >> shift;
+  return static_cast<std::int64_t>((to - from) << shift) >> shift;
+}
+
+std::string CounterTrack::trouble() const {
+  if (far_ < kTold) return {};
+  return fmt::format("its packets' numbers leap by more than {}", kMostMissing);
+}
+
+// Whether a value far ahead and those before it are the numbers of one device. One that is repeated
+// or comes late does not change what they say.
+bool CounterTrack::goes_on(std::uint64_t value) {
+  const std::int64_t on = doubtful_ ? step(*doubtful_, value) : kMostMissing + 1;
+  if (on <= 0 && on > -kLate) return false;
+  agree_ = on > 0 && on <= kMostMissing ? agree_ + 1 : 0;
+  doubtful_ = value;
+  return agree_ >= kAgree || (agree_ > 0 && on <= kNear);
 }
 
 CounterTrack::Verdict CounterTrack::begin(std::uint64_t value, TimeNs arrived_ns, bool restarted) {
@@ -15,13 +37,14 @@ CounterTrack::Verdict CounterTrack::begin(std::uint64_t value, TimeNs arrived_ns
   seen_ = 1;
   heard_ns_ = arrived_ns;
   doubtful_.reset();
+  far_ = 0;
   return restarted ? Verdict::kRestarted : Verdict::kNew;
 }
 
 CounterTrack::Verdict CounterTrack::take(std::uint64_t value, TimeNs arrived_ns,
                                          LinkCounts& counts) {
   if (!any_) return begin(value, arrived_ns, false);
-  const std::int64_t step = step_to(value);
+  const std::int64_t step = this->step(value_, value);
   const bool silent = arrived_ns - heard_ns_ >= kSilence_ns;
   if (step <= 0) {
     const auto back = static_cast<std::uint64_t>(-step);
@@ -42,14 +65,13 @@ CounterTrack::Verdict CounterTrack::take(std::uint64_t value, TimeNs arrived_ns,
     return Verdict::kOlder;
   }
   if (step > kMostMissing) {
-    const bool follows = doubtful_ && value - *doubtful_ <= 2 && value != *doubtful_;
-    if (!follows) {
-      doubtful_ = value;
-      ++counts.malformed;
-      return Verdict::kDoubtful;
+    if (goes_on(value)) {
+      ++counts.restarts;
+      return begin(value, arrived_ns, true);
     }
-    ++counts.restarts;
-    return begin(value, arrived_ns, true);
+    ++far_;
+    ++counts.malformed;
+    return Verdict::kDoubtful;
   }
   counts.lost += static_cast<std::uint64_t>(step - 1);
   seen_ = step < 64 ? seen_ << step | 1 : 1;
@@ -57,6 +79,7 @@ CounterTrack::Verdict CounterTrack::take(std::uint64_t value, TimeNs arrived_ns,
   newest_ += static_cast<std::uint64_t>(step);
   heard_ns_ = arrived_ns;
   doubtful_.reset();
+  far_ = 0;
   return Verdict::kNew;
 }
 

@@ -36,6 +36,8 @@ class SuitFrames {
   static constexpr TimeNs kKept_ns = 500'000'000;
   // Frames in a row that lacked parts or segments.
   std::uint64_t incomplete() const { return incomplete_; }
+  // Why no whole frame counts, in words; empty: they count.
+  std::string trouble() const { return samples_.trouble(); }
 
  private:
   struct Pending {

@@ -212,7 +212,7 @@ Result<TcpReceiver> TcpReceiver::open(const Address& address, Way way) {
   return out;
 }
 
-// Takes all who called; the newest waits.
+// Takes all who called: the first one is used, the newest other one waits.
 void TcpReceiver::accept() {
   for (int i = 0; i < kMostCallers; ++i) {
     sockaddr_in from{};
@@ -222,6 +222,7 @@ void TcpReceiver::accept() {
     if (!caller.open()) return;
     keep_alive(caller);
     waiting_ = std::move(caller);
+    if (take_waiting()) continue;
     std::array<char, INET_ADDRSTRLEN> text{};
     (void)::inet_ntop(AF_INET, &from.sin_addr, text.data(), text.size());
     waiting_from_ = text.data();
@@ -235,8 +236,9 @@ void TcpReceiver::drop_waiting() {
   if (ended(got)) waiting_ = Descriptor();
 }
 
+// Whether there is a stream now that there was not.
 bool TcpReceiver::take_waiting() {
-  if (!waiting_.open()) return false;
+  if (stream_.open() || !waiting_.open()) return false;
   stream_ = std::exchange(waiting_, Descriptor());
   heard_ns_ = now_ns();
   return true;

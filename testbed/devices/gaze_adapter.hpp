@@ -9,6 +9,9 @@
 namespace neritic::testbed {
 
 class GazeAdapter final : public DeviceAdapter {
+ public:
+  std::string trouble() const override { return sequence_.trouble(); }
+
  private:
   void receive(net::Bytes bytes, bool cut, TimeNs arrived_ns, Outlet& out) override;
 

@@ -13,6 +13,7 @@ class JacketAdapter final : public DeviceAdapter {
  public:
   TimeNs wakes_at_ns() const override;
   void tick(TimeNs now_ns, Outlet& out) override;
+  std::string trouble() const override { return sequence_.trouble(); }
 
   // After a silence of this length no lost press is made up for: a press that the diver may no
   // longer want must not fill a jacket. The group's own hold time lets the buttons go. No button is

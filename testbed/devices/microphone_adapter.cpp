@@ -50,7 +50,8 @@ bool MicrophoneAdapter::of_this_kind(const Result<net::RtpPacket>& packet) {
 }
 
 std::string MicrophoneAdapter::trouble() const {
-  return others_ >= kOthersTold ? other_ : rate_.trouble();
+  if (others_ >= kOthersTold) return other_;
+  return rate_.trouble().empty() ? sequence_.trouble() : rate_.trouble();
 }
 
 void MicrophoneAdapter::receive(net::Bytes bytes, bool cut, TimeNs arrived_ns, Outlet& out) {

@@ -65,7 +65,7 @@ std::string SuitAdapter::trouble() const {
                        type_);
   if (frames_.incomplete() >= kTroubleAfter)
     return fmt::format("no frame has all {} segments of the body", net::kMxtpBodySegments);
-  return {};
+  return frames_.trouble();
 }
 
 }  // namespace neritic::testbed

@@ -195,6 +195,63 @@ TEST(CounterTrack, OneCorruptNumberDoesNotMakeGoodOnesOld) {
   EXPECT_EQ(counts.lost, 0u);
 }
 
+// Numbers that rise by more than 2: a program that sends every fourth frame, loss, or both. After a
+// pause, in which more went by than may be missing, they count again, over a wrap too and if some
+// come late or twice; meanwhile the reason is told.
+TEST(CounterTrack, NumbersOfAnyStepCountAgainAfterAPause) {
+  using enum CounterTrack::Verdict;
+  for (const int bits : {16, 32})
+    for (const std::uint64_t step : {1, 2, 3, 4, 10, 250, 1000})
+      for (const bool rough : {false, true}) {
+        SCOPED_TRACE(fmt::format("{} bits, step {}, rough {}", bits, step, rough));
+        const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
+        LinkCounts counts;
+        CounterTrack track(bits);
+        TimeNs now = 0;
+        const auto take = [&](std::uint64_t value) {
+          return track.take(value & mask, now += 4'000'000, counts);
+        };
+        std::uint64_t value = mask - 20 * step - 5000;
+        for (int i = 0; i < 20; ++i) EXPECT_EQ(take(value += step), kNew);
+        now += 3'000'000'000;
+        value += 5000 - 2 * step;  // the wrap is near
+        int until = 0;
+        std::string told;
+        for (bool found = false; !found && until < 20; ++until) {
+          value += step;
+          found = take(value) == kRestarted;
+          told += track.trouble();
+          if (rough && !found && until % 2 == 1) {
+            EXPECT_EQ(take(value), kDoubtful);
+          }
+        }
+        EXPECT_LE(until, 4);
+        EXPECT_EQ(counts.restarts, 1u);
+        EXPECT_EQ(track.trouble(), "");
+        for (int i = 0; i < 20; ++i) EXPECT_EQ(take(value += step), kNew);
+        EXPECT_EQ(told.empty(), step <= 2) << told;
+      }
+}
+
+// Every second number is wrong; or none goes on from any other.
+TEST(CounterTrack, NumbersThatAgreeWithNothingAreToldAndDoNotCount) {
+  using enum CounterTrack::Verdict;
+  LinkCounts counts;
+  CounterTrack track(32);
+  EXPECT_EQ(track.take(100, 0, counts), kNew);
+  for (std::uint64_t i = 1; i < 1000; ++i) {
+    EXPECT_EQ(track.take(1'000'000 + 500 * i, static_cast<TimeNs>(i), counts), kDoubtful);
+    EXPECT_EQ(track.take(100 + i, static_cast<TimeNs>(i), counts), kNew);
+    EXPECT_EQ(track.trouble(), "");
+  }
+  for (std::uint64_t i = 1; i < 100; ++i)
+    EXPECT_EQ(track.take(5'000'000 + 2000 * i, static_cast<TimeNs>(i), counts), kDoubtful);
+  EXPECT_EQ(track.trouble(), "its packets' numbers leap by more than 1000");
+  EXPECT_EQ(counts.restarts, 0u);
+  EXPECT_EQ(track.take(1100, 2000, counts), kNew);
+  EXPECT_EQ(track.trouble(), "");
+}
+
 TEST(RoughLink, TheSameSeedGivesTheSameFaults) {
   const auto run = [](std::uint64_t seed) {
     RoughLink link({.delay_s = 0.01, .jitter_s = 0.02, .loss = 0.1, .repeat = 0.1, .seed = seed});

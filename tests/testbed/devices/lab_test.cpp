@@ -146,7 +146,7 @@ TEST(DeviceSource, ASecondSuitAtOnePortOfTcpIsTold) {
   const std::vector<std::byte> bytes(10);
   const auto trouble_becomes = [&](std::string_view wanted) {
     for (int i = 0; i < 500 && devices->health()[0].trouble != wanted; ++i) {
-      EXPECT_TRUE(first.send(bytes));
+      ASSERT_TRUE(first.send(bytes));
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     EXPECT_EQ(devices->health()[0].trouble, wanted);

@@ -132,6 +132,30 @@ TEST(SuitAdapter, ARestartedSuitIsOnTimeAgain) {
   EXPECT_EQ(bench.out.sent(), bench.out.accepted());
 }
 
+// A suit of which every fourth frame is sent, over a pause of 5 s.
+TEST(SuitAdapter, ADecimatedSuitMovesAgainAfterAPause) {
+  Bench bench("suit = \"mxtp udp\"\n");
+  SuitAdapter suit(0, false);
+  const net::SuitFrame still = suit_frame({}, {}, Quat(1, 0, 0, 0));
+  std::size_t moved = 0;
+  for (std::uint32_t i = 0; i < 600; ++i) {
+    if (i >= 150 && i < 450) continue;
+    suit.take(
+        net::encode_mxtp(
+            {.sample = 4 * i, .items = 23, .time_ms = 4 * i * 1000 / 240, .body_segments = 23},
+            still.body),
+        false, kSecond_ns + i * 4 * kSecond_ns / 240, bench.out);
+    const std::size_t now = bench.samples().size();
+    if (i >= 450) moved += now;
+    if (i == 452) {
+      EXPECT_EQ(suit.trouble(), "its packets' numbers leap by more than 1000");
+    }
+  }
+  EXPECT_EQ(moved, 2u * 147u);
+  EXPECT_EQ(suit.trouble(), "");
+  expect_adds_up(suit.counts());
+}
+
 TEST(SuitAdapter, OneThatGivesNoWholeFrameSaysSo) {
   Bench bench("suit = \"mxtp udp\"\n");
   SuitAdapter suit(0, false);
