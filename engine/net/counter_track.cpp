@@ -32,6 +32,7 @@ bool CounterTrack::goes_on(std::uint64_t value) {
 
 CounterTrack::Verdict CounterTrack::begin(std::uint64_t value, TimeNs arrived_ns, bool restarted) {
   any_ = true;
+  other_ = false;
   value_ = value;
   newest_ = restarted ? newest_ + 1 : value;
   seen_ = 1;
@@ -44,6 +45,10 @@ CounterTrack::Verdict CounterTrack::begin(std::uint64_t value, TimeNs arrived_ns
 CounterTrack::Verdict CounterTrack::take(std::uint64_t value, TimeNs arrived_ns,
                                          LinkCounts& counts) {
   if (!any_) return begin(value, arrived_ns, false);
+  if (other_) {
+    ++counts.restarts;
+    return begin(value, arrived_ns, true);
+  }
   const std::int64_t step = this->step(value_, value);
   const bool silent = arrived_ns - heard_ns_ >= kSilence_ns;
   if (step <= 0) {

@@ -22,6 +22,7 @@ struct LinkCounts {
   std::uint64_t restarts = 0;    // of the device
   std::uint64_t refused = 0;     // parts of whole ones: a segment that is not finite
   std::uint64_t overflowed = 0;  // dropped by the full receive queue
+  std::uint64_t strangers = 0;   // datagrams of another address than the one used; nobody read them
 };
 
 class CounterTrack {
@@ -33,6 +34,8 @@ class CounterTrack {
   // The value of a packet that arrived then; counts what it finds. An older value that was counted
   // as lost is so no more. kDoubtful: far ahead; counted as malformed.
   Verdict take(std::uint64_t value, TimeNs arrived_ns, LinkCounts& counts);
+  // The next value is that of another device: it counts, as a restart.
+  void restart() { other_ = true; }
   // The value of the newest packet without wraps: rises, also over a restart.
   std::uint64_t newest() const { return newest_; }
 
@@ -51,6 +54,7 @@ class CounterTrack {
 
   int bits_;
   bool any_ = false;
+  bool other_ = false;                     // the next value is of another device
   std::uint64_t value_ = 0;                // the newest, as it came
   std::uint64_t newest_ = 0;               // without wraps
   std::uint64_t seen_ = 0;                 // bit i: newest - i came

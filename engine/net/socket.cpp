@@ -132,6 +132,7 @@ std::uint16_t UdpReceiver::port() const {
 std::size_t UdpReceiver::receive(const Received& received, std::size_t most) {
   std::array<mmsghdr, kBatch> messages{};
   std::array<iovec, kBatch> parts{};
+  std::array<sockaddr_in, kBatch> senders{};
   alignas(cmsghdr) std::array<std::array<char, kControl>, kBatch> control{};
   std::size_t total = 0;
   while (total < most) {
@@ -141,6 +142,8 @@ std::size_t UdpReceiver::receive(const Received& received, std::size_t most) {
       messages[i].msg_hdr = {};
       messages[i].msg_hdr.msg_iov = &parts[i];
       messages[i].msg_hdr.msg_iovlen = 1;
+      messages[i].msg_hdr.msg_name = &senders[i];
+      messages[i].msg_hdr.msg_namelen = sizeof senders[i];
       messages[i].msg_hdr.msg_control = control[i].data();
       messages[i].msg_hdr.msg_controllen = kControl;
     }
@@ -152,6 +155,7 @@ std::size_t UdpReceiver::receive(const Received& received, std::size_t most) {
       TimeNs stamp_ns = now;
       read_control(messages[i].msg_hdr, overflowed_, stamp_ns);
       waited_ns_ = now - stamp_ns < kMostWaited_ns ? std::max<TimeNs>(now - stamp_ns, 0) : 0;
+      from_ = ntohl(senders[i].sin_addr.s_addr);
       received(Bytes(buffer_).subspan(i * kMostDatagram, messages[i].msg_len),
                (messages[i].msg_hdr.msg_flags & MSG_TRUNC) != 0);
     }

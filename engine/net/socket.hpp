@@ -46,6 +46,8 @@ class UdpReceiver {
   std::uint64_t overflowed() const { return overflowed_; }
   // While `received` has a datagram: how long that one waited in the kernel, by its own stamps.
   TimeNs waited_ns() const { return waited_ns_; }
+  // While `received` has a datagram: the IPv4 address that it came from, in the host's order.
+  std::uint32_t from() const { return from_; }
   int descriptor() const { return socket_.get(); }
   // Where port 0 was asked for, the port that the system chose.
   std::uint16_t port() const;
@@ -57,6 +59,7 @@ class UdpReceiver {
   std::vector<std::byte> buffer_;
   std::uint64_t overflowed_ = 0;
   TimeNs waited_ns_ = 0;
+  std::uint32_t from_ = 0;
 };
 
 class UdpSender {

@@ -34,6 +34,10 @@ double lost_share(const net::LinkCounts& link) {
          static_cast<double>(std::max<std::uint64_t>(1, link.lost + link.used));
 }
 
+std::string numbers_of(std::uint32_t ipv4) {
+  return fmt::format("{}.{}.{}.{}", ipv4 >> 24, ipv4 >> 16 & 255, ipv4 >> 8 & 255, ipv4 & 255);
+}
+
 std::string place_of(const scene::DeviceSource& source) {
   if (source.by == "udp" || source.by.starts_with("tcp")) return to_text(source.address);
   return source.by + " " + source.port;
@@ -82,10 +86,7 @@ void DeviceSource::run() {
     const int wait_ms =
         static_cast<int>(std::clamp<TimeNs>(wait_ns / kMillisecond_ns, 0, TimeNs{kLongestWait_ms}));
     feed_->receive(
-        [this](net::Bytes bytes, bool cut) {
-          heard_ns_ = now_ns() - feed_->waited_ns();
-          adapter_->take(bytes, cut, heard_ns_, outlet_);
-        },
+        [this](net::Bytes bytes, bool cut) { take(bytes, cut, now_ns() - feed_->waited_ns()); },
         wait_ms);
     feed_->exchange_times(*adapter_);
     adapter_->tick(now_ns(), outlet_);
@@ -104,12 +105,20 @@ Status DeviceSource::poll(SampleInbox&, double scene_time_s) {
 
 void DeviceSource::receive_at(TimeNs at_ns, int wait_ms) {
   feed_->at_simulated(at_ns);
-  feed_->receive(
-      [&](net::Bytes bytes, bool cut) {
-        heard_ns_ = at_ns;
-        adapter_->take(bytes, cut, at_ns, outlet_);
-      },
-      wait_ms);
+  feed_->receive([&](net::Bytes bytes, bool cut) { take(bytes, cut, at_ns); }, wait_ms);
+}
+
+// Garbage of others does not keep the device out: a sender is chosen by what can be used.
+void DeviceSource::take(net::Bytes bytes, bool cut, TimeNs arrived_ns) {
+  const auto from = feed_->from();
+  if (from && !senders_.admits(*from, arrived_ns)) {
+    ++strangers_;
+    return;
+  }
+  heard_ns_ = arrived_ns;
+  const std::uint64_t used = adapter_->counts().used;
+  adapter_->take(bytes, cut, arrived_ns, outlet_);
+  if (from && adapter_->counts().used > used) (void)senders_.use(*from, arrived_ns);
 }
 
 void DeviceSource::tell(TimeNs now_ns) {
@@ -124,6 +133,7 @@ void DeviceSource::tell(TimeNs now_ns) {
   const std::lock_guard lock(mutex_);
   health_.link = counts;
   health_.link.overflowed = feed_->overflowed();
+  health_.link.strangers = strangers_;
   health_.clock = adapter_->clock();
   health_.samples = outlet_.sent();
   health_.accepted = outlet_.accepted();
@@ -131,6 +141,9 @@ void DeviceSource::tell(TimeNs now_ns) {
   health_.rate_hz = rate_hz_;
   health_.trouble = feed_->trouble();
   if (health_.trouble.empty()) health_.trouble = adapter_->trouble();
+  if (const auto other = senders_.other(); other && health_.trouble.empty())
+    health_.trouble = fmt::format("{} sends here too and is not used: one sender a port",
+                                  numbers_of(static_cast<std::uint32_t>(*other)));
 }
 
 DeviceHealth DeviceSource::health() const {
@@ -158,6 +171,7 @@ std::string health_words(const DeviceHealth& health, TimeNs now_ns) {
                                     {link.malformed, "malformed"},
                                     {link.unused, "not used"},
                                     {link.overflowed, "dropped by the full queue"},
+                                    {link.strangers, "of other senders"},
                                     {link.restarts, "times started again"}})
     if (count > 0) words += fmt::format(", {} {}", count, what);
   const net::ClockEstimate& clock = health.clock;

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <thread>
 
+#include "engine/net/sender_choice.hpp"
 #include "testbed/devices/adapter.hpp"
 #include "testbed/devices/feed.hpp"
 #include "testbed/samples/source.hpp"
@@ -63,16 +64,23 @@ class DeviceSource final : public SampleSource {
  private:
   DeviceSource(const scene::DeviceSource& source, std::unique_ptr<Feed> feed,
                std::unique_ptr<DeviceAdapter> adapter, const Outlet& outlet)
-      : settings_(source), feed_(std::move(feed)), adapter_(std::move(adapter)), outlet_(outlet) {
+      : settings_(source),
+        feed_(std::move(feed)),
+        adapter_(std::move(adapter)),
+        senders_(adapter_->silence_ns()),
+        outlet_(outlet) {
     adapter_->give_signal_to(&signal_);
   }
   void run();
+  void take(net::Bytes bytes, bool cut, TimeNs arrived_ns);
   void tell(TimeNs now_ns);
 
   scene::DeviceSource settings_;
   SignalQueue signal_;
   std::unique_ptr<Feed> feed_;
   std::unique_ptr<DeviceAdapter> adapter_;
+  net::SenderChoice senders_;  // by address
+  std::uint64_t strangers_ = 0;
   Outlet outlet_;
   TimeNs rated_ns_ = 0;  // when the rate was measured
   std::uint64_t rated_ = 0;

@@ -30,6 +30,7 @@ class UdpFeed final : public Feed {
   }
   std::uint64_t overflowed() const override { return receiver_.overflowed(); }
   TimeNs waited_ns() const override { return receiver_.waited_ns(); }
+  std::optional<std::uint32_t> from() const override { return receiver_.from(); }
 
  private:
   net::UdpReceiver receiver_;

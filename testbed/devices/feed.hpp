@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "engine/net/socket.hpp"
 #include "engine/scene/source_settings.hpp"
@@ -23,6 +24,8 @@ class Feed {
   virtual std::uint64_t overflowed() const { return 0; }
   // While `received` has bytes: for how long they lay here before, as far as known.
   virtual TimeNs waited_ns() const { return 0; }
+  // While `received` has bytes: the IPv4 address that they came from; none: of one sender alone.
+  virtual std::optional<std::uint32_t> from() const { return {}; }
   // Whether the other end is there, in words; empty: nothing to say.
   virtual std::string trouble() const { return {}; }
   // For feeds whose protocol asks for the device's time.

@@ -53,6 +53,11 @@ bool JacketAdapter::plausible(const net::UbcdCounters& now, TimeNs arrived_ns,
 
 void JacketAdapter::take_counters(const net::JacketPacket& packet, TimeNs arrived_ns, Outlet& out) {
   using Verdict = net::CounterTrack::Verdict;
+  if (!jackets_.admits(packet.counters->device, arrived_ns)) {
+    ++counts_.unused;
+    return;
+  }
+  if (jackets_.use(packet.counters->device, arrived_ns)) sequence_.restart();
   const Verdict verdict = sequence_.take(packet.counters->sequence, arrived_ns, counts_);
   if (verdict != Verdict::kNew && verdict != Verdict::kRestarted) return;
   const auto sent_ns =
@@ -91,6 +96,12 @@ void JacketAdapter::take_counters(const net::JacketPacket& packet, TimeNs arrive
   }
   given_ = pressed;
   out.send(JacketButtons{pressed}, clock_.to_host(sent_ns), arrived_ns);
+}
+
+std::string JacketAdapter::trouble() const {
+  if (const auto other = jackets_.other())
+    return fmt::format("jacket {} sends here too and is not used: one jacket a port", *other);
+  return sequence_.trouble();
 }
 
 TimeNs JacketAdapter::wakes_at_ns() const {

@@ -1,10 +1,12 @@
 // The buttons of a buoyancy jacket. UBCD packets say how long each button was pressed in all: the
 // next packet makes up for presses whose packets were lost, so that loss changes no amount of gas.
 // A counter that rises by more than the time that went by is malformed.
+// Of several jackets (UBCD's byte 5) the first is used until it is silent for a second.
 // The other two forms say only which buttons are pressed now. The thread of the device.
 #pragma once
 
 #include "engine/net/jacket_wire.hpp"
+#include "engine/net/sender_choice.hpp"
 #include "testbed/devices/adapter.hpp"
 
 namespace neritic::testbed {
@@ -13,7 +15,7 @@ class JacketAdapter final : public DeviceAdapter {
  public:
   TimeNs wakes_at_ns() const override;
   void tick(TimeNs now_ns, Outlet& out) override;
-  std::string trouble() const override { return sequence_.trouble(); }
+  std::string trouble() const override;
 
   // After a silence of this length no lost press is made up for: a press that the diver may no
   // longer want must not fill a jacket. The group's own hold time lets the buttons go. No button is
@@ -36,6 +38,7 @@ class JacketAdapter final : public DeviceAdapter {
     TimeNs said_ns = 0, given_ns = 0;  // pressed so far by the jacket, and in the scene
     TimeNs until_ns = 0;               // owed presses end then
   };
+  net::SenderChoice jackets_;  // by UBCD's byte 5
   net::CounterTrack sequence_{16};
   std::array<Button, 3> buttons_;
   std::uint64_t given_ = 0;  // bits that are pressed in the scene

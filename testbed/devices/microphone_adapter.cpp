@@ -51,6 +51,7 @@ bool MicrophoneAdapter::of_this_kind(const Result<net::RtpPacket>& packet) {
 
 std::string MicrophoneAdapter::trouble() const {
   if (others_ >= kOthersTold) return other_;
+  if (senders_.other()) return "a second microphone sends here too and is not used: one a port";
   return rate_.trouble().empty() ? sequence_.trouble() : rate_.trouble();
 }
 
@@ -59,6 +60,11 @@ void MicrophoneAdapter::receive(net::Bytes bytes, bool cut, TimeNs arrived_ns, O
   datagram(bytes, cut, [&] {
     auto packet = net::decode_rtp(bytes);
     if (!of_this_kind(packet)) return;
+    if (!senders_.admits(packet->ssrc, arrived_ns)) {
+      ++counts_.unused;
+      return;
+    }
+    if (senders_.use(packet->ssrc, arrived_ns)) sequence_.restart();
     const Verdict verdict = sequence_.take(packet->sequence, arrived_ns, counts_);
     if (verdict == Verdict::kRepeated || verdict == Verdict::kDoubtful) return;
     const std::uint64_t newest = sequence_.newest();

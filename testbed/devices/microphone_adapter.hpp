@@ -9,6 +9,7 @@
 
 #include "diver/breath_monitor.hpp"
 #include "engine/net/rtp.hpp"
+#include "engine/net/sender_choice.hpp"
 #include "testbed/devices/adapter.hpp"
 #include "testbed/devices/sound_rate.hpp"
 
@@ -48,6 +49,7 @@ class MicrophoneAdapter final : public DeviceAdapter {
   double rate_hz_;
   std::size_t block_samples_;
   diver::BreathAnalyser analyser_;
+  net::SenderChoice senders_;  // by RTP's SSRC
   SoundRate rate_;
   std::uint64_t others_ = 0;  // whole packets in a row whose payload type is not used
   std::string other_;         // why not the newest of them

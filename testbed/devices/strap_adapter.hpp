@@ -15,6 +15,7 @@ class StrapAdapter final : public DeviceAdapter {
  public:
   // It speaks once a second, of what was before.
   TimeNs max_age_ns() const override { return 3'000'000'000; }
+  TimeNs silence_ns() const override { return 5 * kSecond_ns; }
   void give_signal_to(SignalQueue* ecg) override { signal_ = ecg; }
 
  private:

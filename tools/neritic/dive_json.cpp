@@ -107,6 +107,7 @@ nlohmann::json device_json(const DeviceHealth& health) {
                       {"restarts", link.restarts},
                       {"refused_parts", link.refused},
                       {"queue_overflowed", link.overflowed},
+                      {"strangers", link.strangers},
                       {"trouble", health.trouble},
                       {"clock", nullptr}};
   if (clock.known)

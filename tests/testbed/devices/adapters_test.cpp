@@ -431,6 +431,75 @@ TEST(JacketAdapter, CountersThatLeapPressNothing) {
   expect_adds_up(jacket.counts());
 }
 
+// Two jackets at one port, whose numbers and counters have nothing to do with each other: the first
+// one presses, the other is told. When the first falls silent, the other one presses.
+TEST(JacketAdapter, OfTwoAtOnePortTheFirstPressesAndTheOtherIsTold) {
+  Bench bench("jacket = \"jacket udp\"\n");
+  JacketAdapter jacket;
+  TimeNs now = kSecond_ns;
+  std::uint16_t sequence = 0;
+  std::vector<std::uint64_t> pressed;
+  const auto run = [&](int packets, std::initializer_list<std::uint8_t> devices) {
+    for (int i = 0; i < packets; ++i, now += 20 * kMillisecond_ns, ++sequence)
+      for (const std::uint8_t device : devices) {
+        net::UbcdCounters counters{
+            .device = device,
+            .sequence = static_cast<std::uint16_t>(sequence + 300 * device),
+            .time_us = static_cast<std::uint64_t>(now / 1000) + 1'000'000 * device};
+        const auto ms = static_cast<std::uint16_t>(7000 * device + 20 * sequence);
+        counters.pressed_ms = {static_cast<std::uint16_t>(device == 1 ? ms : 0), 0,
+                               static_cast<std::uint16_t>(device == 2 ? ms : 0)};
+        jacket.take(net::encode_jacket({{device == 1, false, device == 2}, counters}), false, now,
+                    bench.out);
+        for (const Sample& sample : bench.samples())
+          pressed.push_back(std::get<JacketButtons>(sample.payload).pressed);
+      }
+  };
+  run(100, {1, 2});
+  EXPECT_EQ(pressed, std::vector<std::uint64_t>(100, diver::kInflate));
+  EXPECT_EQ(jacket.counts().unused, 100u);
+  EXPECT_EQ(jacket.counts().malformed + jacket.counts().older + jacket.counts().lost, 0u);
+  EXPECT_EQ(jacket.trouble(), "jacket 2 sends here too and is not used: one jacket a port");
+  run(60, {1});  // the other one went
+  EXPECT_EQ(jacket.trouble(), "");
+  pressed.clear();
+  run(100, {2});
+  EXPECT_EQ(pressed, std::vector<std::uint64_t>(51, diver::kDump));
+  EXPECT_EQ(jacket.trouble(), "");
+  EXPECT_EQ(jacket.counts().restarts, 1u);
+  EXPECT_EQ(jacket.counts().malformed + jacket.counts().lost, 0u);
+  expect_adds_up(jacket.counts());
+}
+
+TEST(MicrophoneAdapter, OfTwoAtOnePortTheFirstIsHeardAndTheOtherIsTold) {
+  Bench bench("mic = \"microphone udp\"\n");
+  MicrophoneAdapter microphone(16'000.0);
+  SignalQueue heard;
+  microphone.give_signal_to(&heard);
+  heard.want(true);
+  const auto run = [&](std::uint32_t from, std::initializer_list<std::uint32_t> senders) {
+    for (std::uint32_t i = from; i < from + 200; ++i)
+      for (const std::uint32_t sender : senders)
+        microphone.take(
+            net::encode_rtp({96, static_cast<std::uint16_t>(i + 100 * sender),
+                             320 * i + 1'000'000 * sender, sender,
+                             std::vector<float>(320, 0.1F * static_cast<float>(sender))}),
+            false, i * 20 * kMillisecond_ns, bench.out);
+    std::vector<float> levels;
+    for (const SignalPacket& packet : heard.take()) levels.push_back(packet.samples.at(0));
+    return levels;
+  };
+  for (const float level : run(0, {1, 2})) EXPECT_NEAR(level, 0.1F, 1e-4F);
+  EXPECT_EQ(microphone.counts().unused, 200u);
+  EXPECT_EQ(microphone.counts().lost + microphone.counts().older, 0u);
+  EXPECT_EQ(microphone.trouble(), "a second microphone sends here too and is not used: one a port");
+  const auto levels = run(200, {2});
+  ASSERT_EQ(levels.size(), 151u);
+  for (const float level : levels) EXPECT_NEAR(level, 0.2F, 1e-4F);
+  EXPECT_EQ(microphone.counts().restarts, 1u);
+  expect_adds_up(microphone.counts());
+}
+
 TEST(MicrophoneAdapter, BreathIsFoundOverALossyLink) {
   Bench bench("mic = \"microphone udp\"\n");
   MicrophoneAdapter microphone(16'000.0);

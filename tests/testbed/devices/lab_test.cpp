@@ -1,6 +1,10 @@
 // A whole dive over real sockets: a person who wears simulated devices, with loss and jitter.
 #include "testbed/simulators/lab.hpp"
 
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include "engine/net/gaze_wire.hpp"
 #include "testbed/record/run_record.hpp"
 #include "tests/testbed/devices/lab_scene.hpp"
 #include "tests/testbed/simulation/replay_run.hpp"
@@ -158,6 +162,56 @@ TEST(DeviceSource, ASecondSuitAtOnePortOfTcpIsTold) {
         "a second sender, at 127.0.0.1, waits until the first one is silent for a second");
   }
   trouble_becomes("");
+}
+
+// Gaze has no number of its device. Garbage of a third address chooses no sender.
+TEST(DeviceSource, OfTwoAddressesAtOnePortTheFirstIsUsedAndTheOtherIsTold) {
+  TestDive dive = dive_of(lab_text("gaze = \"gaze udp 39774\"\n"));
+  const auto devices =
+      Devices::open(dive.scene, *dive.world, dive.simulation->inbox(), DeviceSource::Pace::kPolled)
+          .value();
+  const auto from = [](std::uint32_t ipv4) {
+    net::Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+    sockaddr_in at{};
+    at.sin_family = AF_INET;
+    at.sin_addr.s_addr = htonl(ipv4);
+    EXPECT_EQ(::bind(socket.get(), reinterpret_cast<const sockaddr*>(&at), sizeof at), 0);
+    at.sin_addr.s_addr = htonl(0x7f000001);
+    at.sin_port = htons(39774);
+    EXPECT_EQ(::connect(socket.get(), reinterpret_cast<const sockaddr*>(&at), sizeof at), 0);
+    return socket;
+  };
+  const net::Descriptor first = from(0x7f000001), second = from(0x7f000002),
+                        third = from(0x7f000003);
+  double time_s = 10.0;
+  const auto run = [&](bool with_first) {
+    for (std::uint16_t i = 0; i < 150; ++i) {
+      time_s += 0.01;
+      const auto stamp_us = static_cast<std::uint64_t>(std::llround(time_s * 1e6));
+      const auto number = static_cast<std::uint16_t>(std::lround(time_s * 100.0));
+      const auto mine = net::encode_gaze({.sequence = number, .time_us = stamp_us});
+      const auto other = net::encode_gaze(
+          {.sequence = static_cast<std::uint16_t>(number + 500), .time_us = stamp_us + 77'000'000});
+      EXPECT_EQ(::send(third.get(), "garbage", 7, 0), 7);
+      if (with_first) {
+        EXPECT_EQ(::send(first.get(), mine.data(), mine.size(), 0), std::ssize(mine));
+      }
+      EXPECT_EQ(::send(second.get(), other.data(), other.size(), 0), std::ssize(other));
+      EXPECT_TRUE(devices->all()[0]->poll(dive.simulation->inbox(), time_s).ok());
+    }
+    return devices->health()[0];
+  };
+  DeviceHealth health = run(true);
+  EXPECT_GT(health.link.used, 90u);
+  EXPECT_EQ(health.link.lost + health.link.older + health.link.repeated, 0u);
+  EXPECT_GT(health.link.strangers, 180u);
+  EXPECT_EQ(health.clock.jumps, 0u);
+  EXPECT_TRUE(health.trouble.starts_with("127.0.0.")) << health.trouble;
+  EXPECT_TRUE(health.trouble.ends_with(" sends here too and is not used: one sender a port"));
+  const std::uint64_t used = health.link.used;
+  (void)run(false);
+  health = run(false);
+  EXPECT_GT(health.link.used, used + 100);
 }
 
 TEST(DeviceSource, ASourceThatDiesIsLostAndTheAutopilotSwims) {
