@@ -149,6 +149,7 @@ void read_keys(Keys& keys, Request& request) {
       std::uint64_t protocol = 0;
       keys.count("protocol", protocol, kProtocol, kProtocol, true);
       keys.source("name", request.name);
+      keys.text("participant", request.agent, false);
       return;
     }
     case Op::kTime: {

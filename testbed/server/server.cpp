@@ -1,5 +1,6 @@
 #include "testbed/server/server.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -98,6 +99,7 @@ class Server::Network {
  private:
   struct Client {
     std::string name;
+    std::string participant;  // whom it is, where it joined; empty: nobody
     bool greeted = false;
     ClientMail mail;
   };
@@ -188,6 +190,16 @@ void Server::Network::refuse(ClientId id, std::optional<std::uint64_t> request,
 }
 
 void Server::Network::greet(ClientId id, Client& client, const Request& request) {
+  const auto taken = [&](const auto& other) {
+    return other.first != id && other.second.participant == request.agent;
+  };
+  if (!request.agent.empty() && std::ranges::any_of(clients_, taken))
+    return refuse(
+        id, request.id,
+        fmt::format("hello: participant: found '{}', whom another client is; accepted: one "
+                    "that nobody is",
+                    request.agent));
+  if (!request.agent.empty()) client.participant = request.agent;
   // A key's name is its client's; without keys the client says how it is called.
   if (client.name == kUnnamed && !request.name.empty()) client.name = request.name;
   client.greeted = true;

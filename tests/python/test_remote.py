@@ -281,6 +281,10 @@ class Remote(unittest.TestCase):
             return done.returncode, done.stderr
 
         with Served() as address:
+            found = join(address, SCENE, "--seconds", "0.1")
+            self.assertEqual(found[0], 2, found)
+            self.assertIn("found a server in lock-step", found[1])
+        with Served("--realtime") as address:
             for words, status, line in (((address, "none.toml"), 2, "no such file"), (("there", SCENE), 2, "accepted: tcp://ADDRESS:PORT"),
                                         ((address, SCENE, "--as", "fish"), 2, "found 'fish'"),
                                         ((address, SCENE, "--as", "rov"), 2, "no object with a pose input"),
@@ -356,6 +360,31 @@ class Remote(unittest.TestCase):
                     a, b = here.truth(name), there.truth(name)
                     self.assertGreater(np.linalg.norm(a.position - [9.0 * (name == "bob"), 0, -6]), 0.2)
                     self.assertLess(np.linalg.norm(a.position - b.position), 0.05)
+
+    def test_a_participant_is_one_client_at_a_time(self):
+        thing = '[[objects]]\nname = "bob"\nshape = "box"\nposition_m = [{0}, -6, 0]\n'
+        vehicle = thing.replace("objects", "vehicles") + f'dynamics = "{ROOT}/assets/vehicles/bluerov2_heavy_dynamics.toml"\n'
+        with tempfile.TemporaryDirectory() as folder:
+            scenes = []
+            for i, text in enumerate((thing + 'inputs = {{ pose = "network" }}\n', vehicle, vehicle)):
+                scenes.append(pathlib.Path(folder) / f"{i}.toml")
+                scenes[-1].write_text("[physics]\n" + text.format(10 * i))
+            with Served("--realtime", scene=str(scenes[0])) as address:
+                def joined():
+                    return subprocess.run(["/usr/bin/python3", "-m", "neritic.join", address, scenes[2], "--as", "bob",
+                                           "--seconds", "0.5"], capture_output=True, text=True, timeout=60)
+
+                with neritic.open(scenes[1], real_time=True) as here, neritic.connect(address, name="bob") as there:
+                    neritic.join.join(here, there, "bob", seconds=0.3)
+                    second = joined()
+                    self.assertEqual(second.returncode, 2, second.stderr)
+                    self.assertRegex(second.stderr, "participant: found 'bob', whom another client is; accepted: one that nobody is\n$")
+                    self.assertEqual(second.stderr.count("\n"), 1)
+                    neritic.join.join(here, there, "bob", seconds=0.3)  # the same client again
+                    self.assertLess(np.linalg.norm(there.truth("bob").position - here.truth("bob").position), 0.05)
+                time.sleep(0.3)  # it has gone
+                third = joined()
+                self.assertEqual(third.returncode, 0, third.stderr)
 
     def test_a_diver_who_joins_is_shown_lying_as_he_swims(self):
         assets = str(ROOT / "assets")

@@ -611,6 +611,13 @@ class Worlds(unittest.TestCase):
             for name in ("none/run", "file/run", "run", "run.mcap", ""):
                 with self.assertRaisesRegex(neritic.BadInput, "record: found .*; accepted: "), world.record(os.path.join(folder, name)):
                     self.fail("the trial ran")
+            Path(folder, "kept").mkdir()
+            for name in ("kept", "kept/", "kept/.", "."):
+                with self.assertRaisesRegex(neritic.BadInput, "record: found a folder .*; accepted: a file's name, as .*run$"), \
+                        world.record(os.path.join(folder, name)):
+                    self.fail("the trial ran")
+            self.assertEqual(sorted(os.listdir(folder)), ["file", "kept", "run.mcap"])
+            self.assertEqual(os.listdir(Path(folder, "kept")), [])
         self.assertEqual(world.step, 0)
         with self.assertRaises(neritic.BadInput), world.record("/proc/run"):
             self.fail("the trial ran")

@@ -66,7 +66,13 @@ def exchange(here: World, there: RemoteWorld, own: Optional[str]) -> int:
 
 def join(here: World, there: RemoteWorld, own: Optional[str], seconds: Optional[float] = None,
          rate_hz: float = 60.0) -> None:
-    """Exchanges poses while the world here, opened with real_time=True, runs."""
+    """Exchanges poses while the world here, opened with real_time=True, runs. BadInput: the server steps in lock-step,
+    or another client is `own` there."""
+    if not there.real_time:
+        raise BadInput("found a server in lock-step, whose time others tick; accepted: one of neritic serve --realtime, or of "
+                       "neritic dive --serve")
+    if own is not None:
+        there.be(own)
     steps = max(1, round(1.0 / (rate_hz * here.step_s)))
     end = None if seconds is None else time.monotonic() + seconds
     while end is None or time.monotonic() < end:

@@ -402,6 +402,9 @@ class Core:
         self.recording = False
         self._call("stop_recording", 60.0)
 
+    def be(self, participant: str) -> None:
+        self._call("hello", protocol=_PROTOCOL, participant=participant)
+
     def _hold(self) -> None:
         if not self.real_time:
             self.take_clock(True)
@@ -488,6 +491,16 @@ class RemoteWorld(World):
     def lost_images(self) -> int:
         """Images that this client was too slow for."""
         return self._core.lost_images
+
+    @property
+    def real_time(self) -> bool:
+        """Whether the scene there goes on by itself; else in lock-step, when a client ticks."""
+        return self._open().real_time
+
+    def be(self, participant: str) -> None:
+        """Says that this client is that participant of the scene (neritic.join), until it closes. Refused while
+        another client is."""
+        self._open().be(word("be: participant", participant))
 
     def take_clock(self) -> None:
         """Takes the clock before a first tick."""

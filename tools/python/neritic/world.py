@@ -243,6 +243,8 @@ class World:
     def _check_record(self, name: str) -> None:
         """Refuses a file that could not be written, before anything runs."""
         folder, stem = os.path.split(name)
+        if os.path.isdir(name):
+            raise BadInput(f"record: found a folder {name}; accepted: a file's name, as {os.path.join(name, 'run')}")
         if not stem:
             raise BadInput(f"record: found '{name}'; accepted: a file's name")
         try:
