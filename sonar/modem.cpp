@@ -9,7 +9,6 @@
 namespace neritic::sonar {
 namespace {
 
-constexpr double kSilence_db = -300.0;                   // of a path through the surface
 constexpr std::uint64_t kModemStream = 0x6d6f64656dull;  // of random numbers
 
 double range_of(const Vec3& from_ned_m, const Vec3& to_ned_m) {
@@ -91,6 +90,15 @@ double modem_loss_db(const ModemWater& water, double frequency_hz, const Vec3& f
   return 10.0 * water.spreading * std::log10(range_m) + absorption * range_m;
 }
 
+ModemBand modem_band(const ModemSettings& sender, const ModemSettings& receiver) {
+  const auto low = [](const ModemSettings& m) { return m.frequency_hz - 0.5 * m.bandwidth_hz; };
+  const auto high = [](const ModemSettings& m) { return m.frequency_hz + 0.5 * m.bandwidth_hz; };
+  const double from_hz = std::max(low(sender), low(receiver));
+  const double to_hz = std::min(high(sender), high(receiver));
+  if (!(to_hz > from_hz)) return {};
+  return {std::min((to_hz - from_hz) / sender.bandwidth_hz, 1.0), 0.5 * (from_hz + to_hz)};
+}
+
 double modem_noise_db(const ModemWater& water, const ModemSettings& receiver) {
   const double ambient_db = ambient_noise_db(receiver.frequency_hz, water.wind_m_s, water.shipping);
   const double levels[] = {ambient_db, receiver.self_noise_db};
@@ -102,14 +110,16 @@ double modem_duration_s(const ModemSettings& sender, std::size_t bytes) {
   return sender.preamble_s + 8.0 * static_cast<double>(bytes) / sender.bit_rate_hz;
 }
 
-double modem_bit_error(const ModemSettings& settings, double snr_db) {
-  const double g = power_from_db(snr_db + settings.coding_gain_db) * settings.bandwidth_hz /
-                   settings.bit_rate_hz;
-  return settings.fading ? 1.0 / (2.0 + g) : 0.5 * std::exp(-0.5 * g);
+double modem_bit_error(const ModemSettings& sender, const ModemSettings& receiver, double snr_db) {
+  const double g =
+      power_from_db(snr_db + sender.coding_gain_db) * receiver.bandwidth_hz / sender.bit_rate_hz;
+  return sender.fading || receiver.fading ? 1.0 / (2.0 + g) : 0.5 * std::exp(-0.5 * g);
 }
 
-double modem_success(const ModemSettings& settings, double snr_db, std::size_t bytes) {
-  return std::pow(1.0 - modem_bit_error(settings, snr_db), 8.0 * static_cast<double>(bytes));
+double modem_success(const ModemSettings& sender, const ModemSettings& receiver, double snr_db,
+                     std::size_t bytes) {
+  return std::pow(1.0 - modem_bit_error(sender, receiver, snr_db),
+                  8.0 * static_cast<double>(bytes));
 }
 
 namespace {
@@ -163,20 +173,22 @@ ModemMessage without_words(ModemMessage message) {
 void begin_hearing(const ModemChannel& channel, std::size_t from, const ModemState::Flight& flight,
                    double begins_s, std::size_t to, const Vec3& to_ned_m, ModemState& state) {
   const ModemSettings& sender = channel.modems[from];
-  const bool in_water = flight.from_ned_m.z >= 0.0 && to_ned_m.z >= 0.0;
-  const double level_db =
-      in_water ? sender.source_level_db -
-                     modem_loss_db(channel.water, sender.frequency_hz, flight.from_ned_m, to_ned_m)
-               : kSilence_db;
-  const auto free = std::ranges::find(state.hearings, 0u, &ModemState::Hearing::arriving);
   const bool for_it = flight.message.to == kToAll || flight.message.to == to;
-  if (free == state.hearings.end()) {  // more at once than any receiver keeps apart
+  const auto lost = [&](std::uint64_t ModemCounts::*count, ModemEvent event) {
     if (for_it)
-      report_event(state, &ModemCounts::collided,
-                   {ModemEvent::kCollided, without_words(flight.message), begins_s, flight.sent_s,
-                    begins_s, 0.0});
-    return;
-  }
+      report_event(state, count,
+                   {event, without_words(flight.message), begins_s, flight.sent_s, begins_s, 0.0});
+  };
+  const ModemBand band = modem_band(sender, channel.modems[to]);
+  const bool in_water = flight.from_ned_m.z >= 0.0 && to_ned_m.z >= 0.0;
+  // What is not heard at all disturbs nothing either.
+  if (!in_water || band.share == 0.0) return lost(&ModemCounts::too_weak, ModemEvent::kTooWeak);
+  const double level_db =
+      sender.source_level_db + db_from_power(band.share) -
+      modem_loss_db(channel.water, band.frequency_hz, flight.from_ned_m, to_ned_m);
+  const auto free = std::ranges::find(state.hearings, 0u, &ModemState::Hearing::arriving);
+  // More at once than any receiver keeps apart.
+  if (free == state.hearings.end()) return lost(&ModemCounts::collided, ModemEvent::kCollided);
   const double ends_s = begins_s + flight.ends_s - flight.sent_s;
   ModemState::Hearing now{flight.message,          flight.sent_s, begins_s, ends_s,
                           power_from_db(level_db), 0.0,           1,        0};
@@ -201,7 +213,7 @@ void end_hearing(const ModemChannel& channel, std::size_t to, ModemState::Hearin
   hearing.arriving = 0;
   const ModemMessage& message = hearing.message;
   if (message.to != kToAll && message.to != to) return;  // others' messages only disturb
-  const ModemSettings& receiver = channel.modems[to];
+  const ModemSettings &sender = channel.modems[message.from], &receiver = channel.modems[to];
   const double noise = power_from_db(modem_noise_db(channel.water, receiver));
   const double alone_db = db_from_power(hearing.power / noise);
   const double snr_db = db_from_power(hearing.power / (noise + hearing.others_power));
@@ -216,10 +228,11 @@ void end_hearing(const ModemChannel& channel, std::size_t to, ModemState::Hearin
   const std::size_t bytes = static_cast<std::size_t>(message.bytes);
   const double draw =
       random_uniform({channel.seed, kModemStream + message.from, message.sequence}, to);
-  const bool got = snr_db >= receiver.detection_db && draw < modem_success(receiver, snr_db, bytes);
+  const bool got =
+      snr_db >= receiver.detection_db && draw < modem_success(sender, receiver, snr_db, bytes);
   if (!got) {
     // Without the others it would have come.
-    const bool by_others = draw < modem_success(receiver, alone_db, bytes);
+    const bool by_others = draw < modem_success(sender, receiver, alone_db, bytes);
     return by_others ? lost(&ModemCounts::collided, ModemEvent::kCollided)
                      : lost(&ModemCounts::noisy, ModemEvent::kNoisy);
   }

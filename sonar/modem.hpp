@@ -44,20 +44,31 @@ struct ModemSettings {
 };
 
 // ---- Links ------------------------------------------------------------------------------------
+// Of a message the sender decides level, band, bit rate, preamble and code; the receiver decides
+// its own band, its noise and what it detects. A path fades alike both ways.
+
 // One way. NaN gives NaN; nothing to travel takes no time.
 double modem_travel_s(const ModemWater& water, const Vec3& from_ned_m, const Vec3& to_ned_m);
 // 10 k log10 r + alpha r, dB re 1 m, r from kNearestRange_m on.
 double modem_loss_db(const ModemWater& water, double frequency_hz, const Vec3& from_ned_m,
                      const Vec3& to_ned_m);
+// The part of the sender's power, spread evenly over its band, that lies in the receiver's band.
+struct ModemBand {
+  double share = 0.0;         // 0: the bands have nothing in common; 1: the receiver covers all
+  double frequency_hz = 0.0;  // the middle of what they have in common
+};
+ModemBand modem_band(const ModemSettings& sender, const ModemSettings& receiver);
 // In a receiver's band, dB re 1 uPa^2: ambient and its own.
 double modem_noise_db(const ModemWater& water, const ModemSettings& receiver);
 double modem_duration_s(const ModemSettings& sender, std::size_t bytes);
 // Errors of non-coherent frequency keying in noise (Proakis, Digital Communications, 4th ed., eq.
-// 5.2-69: exp(-g / 2) / 2), or with Rayleigh fading (eq. 14.3-12: 1 / (2 + g)); g: energy of a bit
-// over the noise density.
-double modem_bit_error(const ModemSettings& settings, double snr_db);
+// 5.2-69: exp(-g / 2) / 2), or with Rayleigh fading (eq. 14.3-12: 1 / (2 + g)), if either modem's
+// paths fade; g: energy of a bit, of the sender's rate and code, over the noise density. snr_db: in
+// the receiver's band.
+double modem_bit_error(const ModemSettings& sender, const ModemSettings& receiver, double snr_db);
 // For all bits, by independent errors.
-double modem_success(const ModemSettings& settings, double snr_db, std::size_t bytes);
+double modem_success(const ModemSettings& sender, const ModemSettings& receiver, double snr_db,
+                     std::size_t bytes);
 
 // ---- A channel --------------------------------------------------------------------------------
 inline constexpr std::size_t kModemWords = 8;  // of a message: 64 bytes
@@ -92,7 +103,7 @@ enum class ModemEvent : std::uint64_t {
   kRefused,  // the modem was sending, the message was too long, or kFlying travelled already
   kReceived,
   // Lost, by the cause.
-  kTooWeak,
+  kTooWeak,  // also: in a band that it does not hear, or through the surface
   kNoisy,
   kCollided,
   kWasSending,

@@ -88,11 +88,12 @@ TEST(Modem, BitErrorsFollowTheBooksFormulas) {
   ModemSettings modem;
   modem.coding_gain_db = 0.0;
   modem.bandwidth_hz = 8000.0, modem.bit_rate_hz = 500.0;
-  EXPECT_NEAR(modem_bit_error(modem, 10.0), 1.0 / 162.0, 1e-12);
+  EXPECT_NEAR(modem_bit_error(modem, modem, 10.0), 1.0 / 162.0, 1e-12);
   modem.fading = false;
-  EXPECT_NEAR(modem_bit_error(modem, 0.0), 0.5 * std::exp(-8.0), 1e-15);
-  EXPECT_EQ(modem_success(modem, 0.0, 0), 1.0);
-  EXPECT_NEAR(modem_success(modem, 0.0, 10), std::pow(1.0 - 0.5 * std::exp(-8.0), 80.0), 1e-12);
+  EXPECT_NEAR(modem_bit_error(modem, modem, 0.0), 0.5 * std::exp(-8.0), 1e-15);
+  EXPECT_EQ(modem_success(modem, modem, 0.0, 0), 1.0);
+  EXPECT_NEAR(modem_success(modem, modem, 0.0, 10), std::pow(1.0 - 0.5 * std::exp(-8.0), 80.0),
+              1e-12);
 }
 
 TEST(Modem, AMessageComesAfterItsTravelAndItsBits) {
@@ -191,7 +192,8 @@ TEST(Modem, FartherIsLostMoreOftenAndTheShareIsTheFormulas) {
         fading.source_level_db -
         modem_loss_db(sea.water, fading.frequency_hz, sea.positions[0], sea.positions[1]) -
         modem_noise_db(sea.water, fading);
-    const double share = snr_db >= fading.detection_db ? modem_success(fading, snr_db, 8) : 0.0;
+    const double share =
+        snr_db >= fading.detection_db ? modem_success(fading, fading, snr_db, 8) : 0.0;
     const auto got = static_cast<double>(sea.states[1].counts.received);
     EXPECT_NEAR(got / messages, share, 0.08) << range_m << " m, " << snr_db << " dB";
     const ModemCounts& counts = sea.states[1].counts;
@@ -201,6 +203,89 @@ TEST(Modem, FartherIsLostMoreOftenAndTheShareIsTheFormulas) {
     lost_before = lost;
   }
   EXPECT_EQ(lost_before, 400);
+}
+
+// A message's bits are as long as its sender makes them: slow ones are read by quick modems too.
+TEST(Modem, TheSendersBitRateAndCodeDecideWhatIsReceived) {
+  const auto received = [](const ModemSettings& sender, const ModemSettings& receiver) {
+    Sea sea({{0, 0, 50}, {3000, 0, 50}});
+    sea.modems = {sender, receiver};
+    for (int i = 0; i < 60; ++i) {
+      sea.say(0, 1, 8, 10.0 * i);
+      step(sea.channel(), sea.states, sea.positions, 10.0 * i, 10.0 * i + 5.0);
+      step(sea.channel(), sea.states, sea.positions, 10.0 * i + 5.0, 10.0 * (i + 1));
+    }
+    return sea.states[1].counts.received;
+  };
+  ModemSettings slow, quick;
+  slow.source_level_db = quick.source_level_db = 155.0;
+  slow.detection_db = quick.detection_db = -20.0;
+  slow.fading = quick.fading = false;
+  slow.bit_rate_hz = 50.0, quick.bit_rate_hz = 8000.0;
+  EXPECT_EQ(received(slow, slow), 60u);
+  EXPECT_EQ(received(slow, quick), 60u);
+  EXPECT_EQ(received(quick, slow), received(quick, quick));
+  EXPECT_LT(received(quick, quick), 20u);
+  ModemSettings coded = quick;
+  coded.coding_gain_db = 30.0;
+  EXPECT_EQ(received(coded, quick), 60u);
+  EXPECT_LT(received(quick, coded), 20u);
+  // Noise is the receiver's, level the sender's.
+  ModemSettings noisy = slow;
+  noisy.self_noise_db = 120.0;
+  EXPECT_EQ(received(noisy, slow), 60u);
+  EXPECT_EQ(received(slow, noisy), 0u);
+  // A path fades alike both ways, of whichever modem it is said.
+  ModemSettings fading = slow;
+  fading.fading = true;
+  EXPECT_EQ(modem_bit_error(fading, slow, 3.0), modem_bit_error(slow, fading, 3.0));
+  EXPECT_GT(modem_bit_error(fading, slow, 3.0), modem_bit_error(slow, slow, 3.0));
+}
+
+TEST(Modem, OnlyWhatLiesInTheReceiversBandIsHeard) {
+  ModemSettings narrow = plain(), wide = plain(), apart = plain();
+  narrow.frequency_hz = 24e3, narrow.bandwidth_hz = 2e3;  // within the wide one's 21 to 29 kHz
+  apart.frequency_hz = 40e3, apart.bandwidth_hz = 10e3;
+  EXPECT_EQ(modem_band(narrow, wide).share, 1.0);
+  EXPECT_EQ(modem_band(narrow, wide).frequency_hz, 24e3);
+  EXPECT_EQ(modem_band(wide, narrow).share, 0.25);
+  EXPECT_EQ(modem_band(wide, wide).share, 1.0);
+  EXPECT_EQ(modem_band(wide, apart).share, 0.0);
+  // 21 to 29 kHz in 28 to 52.
+  ModemSettings above = apart;
+  above.bandwidth_hz = 24e3;
+  EXPECT_DOUBLE_EQ(modem_band(wide, above).share, 0.125);
+  EXPECT_EQ(modem_band(wide, above).frequency_hz, 28.5e3);
+  // The energy of a bit over the noise density knows no width of the receiver's band.
+  ModemSettings wider = wide;
+  wider.bandwidth_hz = 16e3;
+  EXPECT_NEAR(modem_bit_error(wide, wide, 0.0), modem_bit_error(wide, wider, -3.0103), 1e-9);
+
+  // Of another band: too weak at the one that it was for, and no disturbance, however near and
+  // many.
+  Sea sea(std::vector<Vec3>(12, Vec3(1, 0, 5)));
+  sea.positions[0] = {300, 0, 5}, sea.positions[1] = {0, 0, 5};
+  for (std::size_t i = 2; i < 12; ++i) sea.modems[i] = apart;
+  for (std::size_t i = 2; i < 12; ++i) sea.say(i, 0, 20, 0.0);
+  sea.say(1, 0, 20, 0.0);
+  sea.run(0.0, 2.0);
+  EXPECT_EQ(sea.states[0].counts.received, 1u);
+  EXPECT_EQ(sea.states[0].counts.too_weak, 10u);
+  EXPECT_EQ(sea.states[0].counts.collided, 0u);
+  // A louder neighbour disturbs by the share of its power that lies in the band: an eighth, a half.
+  const auto snr_db = [](double share) {
+    Sea near({{0, 0, 5}, {300, 0, 5}, {600, 0, 5}});
+    near.modems[2].frequency_hz += (1.0 - share) * near.modems[2].bandwidth_hz;
+    near.modems[2].source_level_db -= 5.0;
+    near.say(2, kToAll, 60, 0.0);
+    near.say(0, 1, 4, 0.2);
+    near.run(0.0, 2.0);
+    const auto got = std::ranges::find(near.states[1].reports, 0u,
+                                       [](const ModemReport& said) { return said.message.from; });
+    EXPECT_EQ(got->event, ModemEvent::kReceived) << share;
+    return got->snr_db;
+  };
+  EXPECT_NEAR(snr_db(0.125) - snr_db(0.5), 10.0 * std::log10(4.0), 0.5);
 }
 
 TEST(Modem, SameSeedSameBitsAndStatesAreWholeAndPlain) {
