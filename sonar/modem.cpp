@@ -40,15 +40,18 @@ Reached reach(const SoundSpeedProfile& profile, double depth_m, double elevation
   return {time_s, at.depth_m};
 }
 
+struct Ray {
+  double time_s = 0.0, elevation_rad = 0.0;  // as it leaves, up positive
+};
 // The ray from one place to the other, by secant steps over its elevation from the straight line's;
-// the straight line's time where none is found (a shadow).
-double bent_time_s(const SoundSpeedProfile& profile, const Vec3& from_ned_m, const Vec3& to_ned_m,
-                   double straight_s) {
+// the straight line where none is found (a shadow).
+Ray bent_ray(const SoundSpeedProfile& profile, const Vec3& from_ned_m, const Vec3& to_ned_m,
+             double straight_s) {
   const Vec3 line = to_ned_m - from_ned_m;
   const double level_m = std::hypot(line.x, line.y);
-  // Straight up or down nothing bends.
-  if (level_m < 1e-3 * std::abs(line.z) || level_m < 1e-6) return straight_s;
   const double straight_rad = std::atan2(-line.z, level_m);
+  // Straight up or down nothing bends.
+  if (level_m < 1e-3 * std::abs(line.z) || level_m < 1e-6) return {straight_s, straight_rad};
   const auto miss = [&](double elevation_rad, double& time_s) {
     const Reached at = reach(profile, from_ned_m.z, elevation_rad, level_m, straight_s);
     time_s = at.time_s;
@@ -58,12 +61,20 @@ double bent_time_s(const SoundSpeedProfile& profile, const Vec3& from_ned_m, con
   double a = straight_rad, miss_a = miss(a, time_s);
   double b = straight_rad + (miss_a > 0.0 ? 1e-3 : -1e-3), miss_b = miss(b, time_s);
   for (int i = 0; i < 24 && std::abs(miss_b) > 1e-6; ++i) {
-    if (miss_b == miss_a) return straight_s;
+    if (miss_b == miss_a) return {straight_s, straight_rad};
     const double next = std::clamp(b - miss_b * (b - a) / (miss_b - miss_a), -1.55, 1.55);
     a = b, miss_a = miss_b;
     b = next, miss_b = miss(b, time_s);
   }
-  return std::abs(miss_b) < 0.1 && std::isfinite(time_s) ? time_s : straight_s;
+  if (!(std::abs(miss_b) < 0.1 && std::isfinite(time_s))) return {straight_s, straight_rad};
+  return {time_s, b};
+}
+
+double straight_time_s(const SoundSpeedProfile& profile, const Vec3& from_ned_m,
+                       const Vec3& to_ned_m, double range_m) {
+  const double elevation_rad =
+      std::asin(std::clamp((from_ned_m.z - to_ned_m.z) / range_m, -1.0, 1.0));
+  return profile.straight_time_s(from_ned_m.z, elevation_rad, range_m);
 }
 
 }  // namespace
@@ -73,11 +84,24 @@ double modem_travel_s(const ModemWater& water, const Vec3& from_ned_m, const Vec
   if (!(range_m > 0.0)) return range_m;  // 0, or NaN
   if (water.path == ModemPath::kConstant || !water.profile)
     return range_m / speed_at(water, 0.5 * (from_ned_m.z + to_ned_m.z));
-  const double elevation_rad =
-      std::asin(std::clamp((from_ned_m.z - to_ned_m.z) / range_m, -1.0, 1.0));
-  const double straight_s = water.profile->straight_time_s(from_ned_m.z, elevation_rad, range_m);
+  const double straight_s = straight_time_s(*water.profile, from_ned_m, to_ned_m, range_m);
   if (water.path == ModemPath::kStraight) return straight_s;
-  return bent_time_s(*water.profile, from_ned_m, to_ned_m, straight_s);
+  return bent_ray(*water.profile, from_ned_m, to_ned_m, straight_s).time_s;
+}
+
+Vec3 modem_arrival(const ModemWater& water, const Vec3& from_ned_m, const Vec3& to_ned_m) {
+  const Vec3 line = from_ned_m - to_ned_m;
+  const double range_m = glm::length(line);
+  if (!(range_m > 0.0)) return {0.0, 0.0, 1.0};
+  const double level_m = std::hypot(line.x, line.y);
+  if (water.path != ModemPath::kBent || !water.profile || level_m == 0.0) return line / range_m;
+  // A ray goes the same way there and back.
+  const double elevation_rad =
+      bent_ray(*water.profile, to_ned_m, from_ned_m,
+               straight_time_s(*water.profile, to_ned_m, from_ned_m, range_m))
+          .elevation_rad;
+  const double level = std::cos(elevation_rad) / level_m;
+  return {level * line.x, level * line.y, -std::sin(elevation_rad)};
 }
 
 double modem_loss_db(const ModemWater& water, double frequency_hz, const Vec3& from_ned_m,
@@ -190,8 +214,14 @@ void begin_hearing(const ModemChannel& channel, std::size_t from, const ModemSta
   // More at once than any receiver keeps apart.
   if (free == state.hearings.end()) return lost(&ModemCounts::collided, ModemEvent::kCollided);
   const double ends_s = begins_s + flight.ends_s - flight.sent_s;
-  ModemState::Hearing now{flight.message,          flight.sent_s, begins_s, ends_s,
-                          power_from_db(level_db), 0.0,           1,        0};
+  ModemState::Hearing now{.message = flight.message,
+                          .sent_s = flight.sent_s,
+                          .begins_s = begins_s,
+                          .ends_s = ends_s,
+                          .power = power_from_db(level_db),
+                          .arriving = 1,
+                          .from_ned_m = flight.from_ned_m,
+                          .to_ned_m = to_ned_m};
   now.sending = sends_within(state, begins_s, ends_s) ? 1 : 0;
   // All that overlap disturb each other, with the most power at once.
   const auto overlaps = [&](const ModemState::Hearing& other) {
@@ -257,8 +287,11 @@ void step(const ModemChannel& channel, std::span<ModemState> states,
             flight.sent_s + modem_travel_s(channel.water, flight.from_ned_m, positions_ned_m[to]);
         if (begins_s > to_s) continue;
         flight.begun |= std::uint64_t{1} << to;
-        // A receiver that came nearer hears it now, not before.
-        begin_hearing(channel, from, flight, std::max(begins_s, std::min(from_s, to_s)), to,
+        // A receiver that came nearer hears it now, not before; one beside a modem that answered
+        // within the last step may have heard it in that step.
+        const bool answered = flight.sent_s > from_s - (to_s - from_s);
+        const double earliest_s = answered ? std::min(flight.sent_s, from_s) : from_s;
+        begin_hearing(channel, from, flight, std::max(begins_s, std::min(earliest_s, to_s)), to,
                       positions_ned_m[to], states[to]);
       }
       const std::uint64_t all = count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
@@ -268,6 +301,15 @@ void step(const ModemChannel& channel, std::span<ModemState> states,
     for (ModemState::Hearing& hearing : states[to].hearings)
       if (hearing.arriving != 0 && hearing.ends_s <= to_s)
         end_hearing(channel, to, hearing, states[to]);
+}
+
+const ModemState::Hearing* heard_as(const ModemState& state, const ModemReport& report) {
+  const auto hearing = std::ranges::find_if(state.hearings, [&](const ModemState::Hearing& one) {
+    return one.arriving == 0 && one.ends_s == report.at_s && one.begins_s == report.heard_s &&
+           one.message.from == report.message.from &&
+           one.message.sequence == report.message.sequence;
+  });
+  return hearing == state.hearings.end() ? nullptr : &*hearing;
 }
 
 std::uint64_t first_kept(const ModemState& state, std::uint64_t seen) {

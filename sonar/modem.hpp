@@ -49,6 +49,9 @@ struct ModemSettings {
 
 // One way. NaN gives NaN; nothing to travel takes no time.
 double modem_travel_s(const ModemWater& water, const Vec3& from_ned_m, const Vec3& to_ned_m);
+// The unit vector from a receiver towards where sound comes from: along the straight line, or with
+// kBent along the ray as it arrives. At the sender's own place: straight down.
+Vec3 modem_arrival(const ModemWater& water, const Vec3& from_ned_m, const Vec3& to_ned_m);
 // 10 k log10 r + alpha r, dB re 1 m, r from kNearestRange_m on.
 double modem_loss_db(const ModemWater& water, double frequency_hz, const Vec3& from_ned_m,
                      const Vec3& to_ned_m);
@@ -153,7 +156,7 @@ struct ModemCounts {
 struct ModemState {
   // kFlying: that travel at once. A modem of the default settings sends 8 bytes in 0.18 s, so that
   // their sound may travel for 5.7 s, 8.5 km, before one more is refused.
-  static constexpr std::size_t kFlying = 32, kHearing = 8, kKept = 16;
+  static constexpr std::size_t kFlying = 32, kHearing = 8, kKept = 24;
   struct Flight {  // a message on its way
     ModemMessage message;
     double sent_s = 0.0, ends_s = 0.0;  // at the sender
@@ -175,6 +178,7 @@ struct ModemState {
     double sent_s = 0.0, begins_s = 0.0, ends_s = 0.0;
     double power = 0.0, others_power = 0.0;   // uPa^2; the most at once of other messages
     std::uint64_t arriving = 0, sending = 0;  // sending: the modem itself sent meanwhile
+    Vec3 from_ned_m{0.0}, to_ned_m{0.0};      // where it was sent, and where its first sound came
 
     static void fields(auto&& field, auto& self) {
       field("message", self.message);
@@ -185,6 +189,8 @@ struct ModemState {
       field("others_power", self.others_power);
       field("arriving", self.arriving);
       field("sending", self.sending);
+      field("from_ned_m", self.from_ned_m);
+      field("to_ned_m", self.to_ned_m);
     }
   };
   std::array<Flight, kFlying> flights{};
@@ -210,9 +216,10 @@ struct ModemChannel {
   std::uint64_t seed = 0;
 };
 
-// Sends a message at now_s. False, and counted: the modem is still sending, has kFlying messages on
-// the way, or the message has no bytes or too many. from and sequence are filled in. A modem
-// above the surface neither sends nor receives.
+// Sends a message at now_s, in the step to come or, as an answer to what came in it, in the one
+// just stepped: then it arrives as if it had been sent in time. False, and counted: the modem is
+// still sending, has kFlying messages on the way, or the message has no bytes or too many. from and
+// sequence are filled in. A modem above the surface neither sends nor receives.
 bool send(const ModemChannel& channel, std::span<ModemState> states, std::size_t from,
           ModemMessage message, double now_s, const Vec3& from_ned_m);
 
@@ -220,6 +227,10 @@ bool send(const ModemChannel& channel, std::span<ModemState> states, std::size_t
 // received when their last bit has come; each modem's newest reports are in its ring.
 void step(const ModemChannel& channel, std::span<ModemState> states,
           std::span<const Vec3> positions_ned_m, double from_s, double to_s);
+
+// The hearing that a report of a message received in the newest step ended. The report is of this
+// state; null for others.
+const ModemState::Hearing* heard_as(const ModemState& state, const ModemReport& report);
 
 // Numbers of a ring's reports that are new since there were `seen`: [first, counts.all()).
 std::uint64_t first_kept(const ModemState& state, std::uint64_t seen);

@@ -14,11 +14,12 @@ namespace neritic::scene {
 // A modem that asks another one where it is, as a USBL does: range by the two-way travel time of a
 // request and its answer, direction by phase over a short baseline.
 struct Ranging {
-  std::string target;  // the object whose modem answers
-  double interval_s = 2.0;
-  double range_noise_m = 0.05;           // standard deviations
-  double direction_noise_rad = 0.00873;  // across the line of sight, both ways
-  std::optional<double> sound_m_s;       // that it reckons with; absent: the water's at its depth
+  std::string target;                       // the object whose modem answers
+  double interval_s = 2.0, offset_s = 0.0;  // from request to request; of the first one
+  std::optional<double> wait_s;             // for an answer; absent: interval_s
+  double range_noise_m = 0.05;              // standard deviations
+  double direction_noise_rad = 0.00873;     // across the line of sight, both ways
+  std::optional<double> sound_m_s;  // that it reckons with; absent: the water's at its depth
 };
 
 // On a vehicle, a diver, or an object that devices move.

@@ -9,6 +9,7 @@ namespace {
 
 constexpr Interval kModemFrequency{100, 1e6, false, false, "hertz"};
 constexpr Interval kModemDecibels{-60, 120, false, false, "decibels"};
+constexpr double kMostWaits = 15.0;  // requests of a USBL whose answers are still to come
 constexpr Interval kModemSpeed{100, 10000, false, false, "m/s"};
 
 Ranging read_usbl(TableReader& reader) {
@@ -17,6 +18,14 @@ Ranging read_usbl(TableReader& reader) {
   if (ranging.target.empty()) reader.refuse("target", "the name of an object with a modem");
   ranging.interval_s =
       reader.number("interval_s", ranging.interval_s, {0.1, 3600, false, false, "seconds"});
+  ranging.offset_s =
+      reader.number("offset_s", ranging.offset_s, {0, 3600, false, false, "seconds"});
+  if (reader.has("wait_s"))
+    ranging.wait_s =
+        reader.number("wait_s", ranging.interval_s, {0.1, 3600, false, false, "seconds"});
+  if (ranging.wait_s.value_or(0.0) > kMostWaits * ranging.interval_s)
+    reader.refuse("wait_s", fmt::format("up to {:g} times the interval, {:g} s", kMostWaits,
+                                        kMostWaits * ranging.interval_s));
   ranging.range_noise_m =
       reader.number("range_noise_m", ranging.range_noise_m, {0, 100, false, false, "metres"});
   ranging.direction_noise_rad =

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "rov/frames.hpp"
+#include "testbed/simulation/modem_outlook.hpp"
 #include "testbed/simulation/place_outlook.hpp"
 #include "testbed/simulation/swim_outlook.hpp"
 #include "testbed/simulation/thrust_outlook.hpp"
@@ -306,6 +307,7 @@ std::vector<std::string> cannot_hold(const PhysicsWorld& world) {
     add_places(world, human, lines);
     add_swim(world, human, lines);
   }
+  add_ranging(world, start, lines);
   return lines;
 }
 

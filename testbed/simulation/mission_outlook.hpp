@@ -21,7 +21,7 @@ namespace neritic::testbed {
 // own saturation gives (rov/allocation.hpp) with all other axes at rest; roll and pitch too, if the
 // thrusters control them. For divers who swim by plan: a speed over ground
 // faster than legs sustain, or through the water without way; a way that is steeper than divers
-// rise and sink.
+// rise and sink. For modems that range: who gives no fix where it starts (modem_outlook.hpp).
 std::vector<std::string> cannot_hold(const PhysicsWorld& world);
 
 // A line each for the missions of vehicles and swim plans of divers that are not finished after

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/core/check.hpp"
 #include "engine/core/random.hpp"
 #include "engine/core/text.hpp"
 #include "rov/frames.hpp"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr std::uint64_t kRangingStream = 0x72616e67696e67ull;  // of random numbers
 constexpr std::uint64_t kRangingBytes = 1, kAnswerBytes = 2;
+constexpr std::uint64_t kNoRequest = ~std::uint64_t{0};
 
 sonar::ModemSettings settings_of(const scene::Modem& modem) {
   return {.source_level_db = modem.source_level_db,
@@ -110,14 +112,53 @@ Result<Modems> Modems::create(const scene::Scene& scene, const Movers& movers) {
                        names.empty() ? "another object with a modem: there is none" : names);
     }
     modem.target = static_cast<std::size_t>(target - out.all_.begin());
-    // An answer leaves when the request is whole: a shorter turnaround would lengthen the range.
-    const double request_s = sonar::modem_duration_s(out.settings_[i], kRangingBytes);
-    if (target->turnaround_s < request_s)
-      return bad_input(
-          "{}: {}: modem.turnaround_s: found {:g}; accepted: {:g} or more, {}'s request",
-          scene.path, target->name, target->turnaround_s, request_s, modem.name);
   }
+  for (std::size_t i = 0; i < out.all_.size(); ++i)
+    if (out.all_[i].ranging) NERITIC_TRY_STATUS(out.check_ranging(scene.path, i));
   return out;
+}
+
+double Modems::request_s(std::size_t modem) const {
+  return sonar::modem_duration_s(settings_[modem], kRangingBytes);
+}
+double Modems::answer_s(std::size_t modem) const {
+  return sonar::modem_duration_s(settings_[all_[modem].target], kAnswerBytes);
+}
+double Modems::wait_s(std::size_t modem) const {
+  const scene::Ranging& ranging = *all_[modem].ranging;
+  return ranging.wait_s.value_or(ranging.interval_s);
+}
+
+Status Modems::check_ranging(const std::string& path, std::size_t index) const {
+  const PhysicsModem &modem = all_[index], &target = all_[modem.target];
+  const auto refused = [&](std::string_view whose, std::string_view key, double found, double least,
+                           const std::string& why) {
+    return bad_input("{}: {}: modem.{}: found {:g}; accepted: {} {:g}, {}", path, whose, key, found,
+                     key == "turnaround_s" ? "from" : "more than", least, why);
+  };
+  // An answer leaves when the request is whole: a shorter turnaround would lengthen the range.
+  if (target.turnaround_s < request_s(index))
+    return refused(target.name, "turnaround_s", target.turnaround_s, request_s(index),
+                   modem.name + "'s request");
+  // While it sends it hears nothing.
+  const double busy_s = request_s(index) + answer_s(index);
+  if (!(modem.ranging->interval_s > busy_s))
+    return refused(modem.name, "usbl.interval_s", modem.ranging->interval_s, busy_s,
+                   "its request and " + target.name + "'s answer");
+  const double back_s = target.turnaround_s + answer_s(index);
+  if (!(wait_s(index) > back_s))
+    return refused(modem.name, modem.ranging->wait_s ? "usbl.wait_s" : "usbl.interval_s",
+                   wait_s(index), back_s,
+                   fmt::format("{}'s turnaround_s and its answer{}", target.name,
+                               modem.ranging->wait_s ? "" : ", or a longer wait_s"));
+  const sonar::ModemBand there = sonar::modem_band(settings_[index], settings_[modem.target]);
+  if (there.share == 0.0)
+    return bad_input(
+        "{}: {}: modem.frequency_hz: found {:g}, {:g} wide; accepted: a band that {} hears: "
+        "{:g}, {:g} wide",
+        path, modem.name, settings_[index].frequency_hz, settings_[index].bandwidth_hz, target.name,
+        settings_[modem.target].frequency_hz, settings_[modem.target].bandwidth_hz);
+  return {};
 }
 
 std::optional<std::size_t> Modems::find(OwnerSort sort, std::uint32_t owner) const {
@@ -156,64 +197,107 @@ struct Modems::Call {
   PhysicsState& after;
 };
 
-void Modems::say(const Call& call, std::size_t modem, sonar::ModemMessage message,
+bool Modems::say(const Call& call, std::size_t modem, sonar::ModemMessage message,
                  double at_s) const {
-  sonar::send(call.channel, call.after.modems(), modem, message, at_s,
-              position_ned_m(modem, call.before, call.from_s));
+  // Within the step it has gone a part of its way.
+  const double share = (at_s - call.from_s) / (call.to_s - call.from_s);
+  Vec3 from = position_ned_m(modem, call.before, call.from_s);
+  if (share > 0.0)
+    from += std::min(share, 1.0) * (position_ned_m(modem, call.after, call.to_s) - from);
+  return sonar::send(call.channel, call.after.modems(), modem, message, at_s, from);
 }
 
 void Modems::send_asked(const Call& call, std::size_t index) const {
   const ModemInputs& asked = call.inputs.modems()[index];
   ModemTasks& tasks = call.after.modem_tasks()[index];
-  // With the requests, answers and messages that come in a step.
-  static_assert(ModemQueue::kInStep + 2 + sonar::ModemState::kHearing <= sonar::ModemState::kKept);
+  // With the request, answers and messages that come in a step.
+  static_assert(ModemQueue::kInStep + 1 + 2 * ModemTasks::kOwed + sonar::ModemState::kHearing <=
+                sonar::ModemState::kKept);
   const std::uint64_t end = std::min(asked.asked, tasks.sent + ModemQueue::kInStep);
   for (; tasks.sent < end; ++tasks.sent) {
     const ModemSend& said = asked.messages[tasks.sent % ModemQueue::kMost];
     sonar::ModemMessage message;
     message.to = said.to == 0 ? sonar::kToAll : said.to - 1;
-    message.bytes = said.to <= all_.size() ? said.bytes : 0;  // to no modem: refused
+    // To no modem or to itself: refused.
+    const bool nobody = said.to > all_.size() || said.to == index + 1;
+    message.bytes = nobody ? 0 : said.bytes;
     for (std::size_t i = 0; i < said.words.size(); ++i)
       message.words[i / 2] |= std::uint64_t{said.words[i]} << (32 * (i % 2));
     say(call, index, message, call.from_s);
   }
 }
 
-// The request that is due; the one before it, if it has no answer yet, will have none.
+namespace {
+
+void miss(ModemTasks& tasks, ModemTasks::Request& request, double at_s) {
+  request.waits = 0;
+  ++tasks.misses;
+  tasks.fix.value = {};
+  tasks.fix.time_s = at_s;
+  ++tasks.fix.count;
+}
+
+}  // namespace
+
+// Answers leave at their instant, be it before the step's end.
+void Modems::send_answers(const Call& call, std::size_t index) const {
+  for (ModemTasks::Answer& owed : call.after.modem_tasks()[index].answers) {
+    if (owed.owed == 0 || owed.at_s >= call.to_s) continue;
+    owed.owed = 0;
+    sonar::ModemMessage answer;
+    answer.kind = sonar::ModemKind::kAnswer;
+    answer.to = owed.to;
+    answer.bytes = kAnswerBytes;
+    answer.words[0] = owed.number;
+    // While the modem sends it is refused, and counted: its asker misses it.
+    say(call, index, answer, std::max(owed.at_s, call.from_s));
+  }
+}
+
+// The request that is due.
 void Modems::range(const Call& call, std::size_t index) const {
   const PhysicsModem& modem = all_[index];
   ModemTasks& tasks = call.after.modem_tasks()[index];
-  if (!modem.ranging || call.from_s < static_cast<double>(tasks.asks) * modem.ranging->interval_s)
-    return;
+  if (!modem.ranging) return;
+  const double due_s =
+      modem.ranging->offset_s + static_cast<double>(tasks.asks) * modem.ranging->interval_s;
+  if (call.from_s < due_s) return;
   ++tasks.asks;
-  if (tasks.waits != 0) {
-    tasks.fix.value = {};
-    tasks.fix.time_s = call.from_s;
-    ++tasks.fix.count;
+  auto request = std::ranges::find(tasks.requests, 0u, &ModemTasks::Request::waits);
+  if (request == tasks.requests.end()) {
+    request = std::ranges::min_element(tasks.requests, {}, &ModemTasks::Request::asked_s);
+    miss(tasks, *request, call.from_s);
   }
   sonar::ModemMessage message;
   message.kind = sonar::ModemKind::kRequest;
   message.to = modem.target;
   message.bytes = kRangingBytes;
-  tasks.waits = 1;  // refused while it sends: no answer comes either
-  tasks.asked_s = call.from_s;
-  tasks.asked_number = call.after.modems()[index].counts.sent;
-  say(call, index, message, call.from_s);
+  *request = {1, call.after.modems()[index].counts.sent, call.from_s};
+  // While the modem sends no request leaves: no answer has its number.
+  if (!say(call, index, message, call.from_s)) request->number = kNoRequest;
 }
 
-// Range by the travel there and back, direction by phase, both with their noise.
-void Modems::fix(const Call& call, std::size_t index, const sonar::ModemReport& answer) const {
+// Range by the travel there and back, direction by the phase of the arriving answer, both with
+// their noise; the place is from where the answer's first sound was heard.
+void Modems::take_answer(const Call& call, std::size_t index,
+                         const sonar::ModemReport& answer) const {
   const PhysicsModem& modem = all_[index];
   ModemTasks& tasks = call.after.modem_tasks()[index];
-  const Vec3 here = position_ned_m(index, call.after, call.to_s);
-  const Vec3 line = position_ned_m(modem.target, call.after, call.to_s) - here;
-  const double distance = glm::length(line), level = std::hypot(line.x, line.y);
+  const auto request = std::ranges::find_if(tasks.requests, [&](const ModemTasks::Request& asked) {
+    return asked.waits != 0 && asked.number == answer.message.words[0];
+  });
+  if (request == tasks.requests.end()) return;  // too late: a miss already
+  const sonar::ModemState::Hearing* hearing = sonar::heard_as(call.after.modems()[index], answer);
+  NERITIC_CHECK(hearing != nullptr, "{}: an answer that was not heard", modem.name);
+  const Vec3& here = hearing->to_ned_m;
+  const Vec3 line = sonar::modem_arrival(water_, hearing->from_ned_m, here);
+  const double level = std::hypot(line.x, line.y);
   const auto error = [&](std::uint64_t i) {
     return random_normal({call.channel.seed, kRangingStream + index, tasks.fix.count}, i);
   };
   rov::UsblReading fix;
   fix.heard = 1;
-  fix.travel_s = answer.heard_s - tasks.asked_s - all_[modem.target].turnaround_s;
+  fix.travel_s = answer.heard_s - request->asked_s - all_[modem.target].turnaround_s;
   const double sound_m_s = modem.ranging->sound_m_s.value_or(
       1.0 / sonar::modem_travel_s(water_, here, here + Vec3(1.0, 0.0, 0.0)));
   fix.range_m =
@@ -221,20 +305,32 @@ void Modems::fix(const Call& call, std::size_t index, const sonar::ModemReport& 
   // Both errors are angles of the line of sight: a bearing turns less where it points down.
   const double across = modem.ranging->direction_noise_rad * error(1);
   const double bearing = level > 0.0 ? std::atan2(line.y, line.x) : 0.0;
-  fix.bearing_rad = std::remainder(
-      bearing + across * distance / std::max(level, 1e-3 * distance + 1e-12), 2.0 * kPi);
+  fix.bearing_rad = std::remainder(bearing + across / std::max(level, 1e-3), 2.0 * kPi);
   fix.elevation_rad = std::atan2(line.z, level) + modem.ranging->direction_noise_rad * error(2);
   const double flat = fix.range_m * std::cos(fix.elevation_rad);
   fix.position_ned_m =
       here + Vec3(flat * std::cos(fix.bearing_rad), flat * std::sin(fix.bearing_rad),
                   fix.range_m * std::sin(fix.elevation_rad));
+  request->waits = 0;
+  ++tasks.fixes;
   tasks.fix.value = fix;
   tasks.fix.time_s = answer.at_s;
   ++tasks.fix.count;
-  tasks.waits = 0;
 }
 
-// Handles what came in: requests are answered, answers become ranges.
+// The oldest request whose answer did not come in time; one reading a step, so that each is seen.
+void Modems::miss_overdue(const Call& call, std::size_t index) const {
+  ModemTasks& tasks = call.after.modem_tasks()[index];
+  if (!all_[index].ranging || tasks.fix.count != call.before.modem_tasks()[index].fix.count) return;
+  ModemTasks::Request* oldest = nullptr;
+  for (ModemTasks::Request& request : tasks.requests)
+    if (request.waits != 0 && request.asked_s + wait_s(index) <= call.to_s &&
+        (oldest == nullptr || request.asked_s < oldest->asked_s))
+      oldest = &request;
+  if (oldest != nullptr) miss(tasks, *oldest, call.to_s);
+}
+
+// Handles what came in: requests are to be answered, answers become ranges.
 void Modems::look(const Call& call, std::size_t index) const {
   ModemTasks& tasks = call.after.modem_tasks()[index];
   const sonar::ModemState& state = call.after.modems()[index];
@@ -242,14 +338,15 @@ void Modems::look(const Call& call, std::size_t index) const {
     const sonar::ModemReport& report = state.reports[k % sonar::ModemState::kKept];
     if (report.event != sonar::ModemEvent::kReceived) continue;
     if (report.message.kind == sonar::ModemKind::kRequest) {
-      tasks.answers = 1;
-      tasks.answer_to = report.message.from;
-      tasks.answer_number = report.message.sequence;
-      tasks.answer_at_s = report.heard_s + all_[index].turnaround_s;
-    } else if (report.message.kind == sonar::ModemKind::kAnswer && tasks.waits != 0 &&
-               all_[index].ranging && report.message.from == all_[index].target &&
-               report.message.words[0] == tasks.asked_number) {
-      fix(call, index, report);
+      const auto free = std::ranges::find(tasks.answers, 0u, &ModemTasks::Answer::owed);
+      if (free == tasks.answers.end())
+        ++tasks.unanswered;
+      else
+        *free = {1, report.message.from, report.message.sequence,
+                 report.heard_s + all_[index].turnaround_s};
+    } else if (report.message.kind == sonar::ModemKind::kAnswer && all_[index].ranging &&
+               report.message.from == all_[index].target) {
+      take_answer(call, index, report);
     }
   }
   tasks.looked = state.counts.all();
@@ -262,22 +359,17 @@ void Modems::step(const PhysicsState& before, const PhysicsInputs& inputs,
   const Call call{{water_, settings_, seed}, before, inputs, from_s, to_s, after};
   std::array<Vec3, sonar::kMostModems> places;
   for (std::size_t i = 0; i < all_.size(); ++i) {
-    ModemTasks& tasks = after.modem_tasks()[i];
-    if (tasks.answers != 0 && tasks.answer_at_s < to_s) {
-      tasks.answers = 0;
-      sonar::ModemMessage answer;
-      answer.kind = sonar::ModemKind::kAnswer;
-      answer.to = tasks.answer_to;
-      answer.bytes = kAnswerBytes;
-      answer.words[0] = tasks.answer_number;
-      say(call, i, answer, std::max(tasks.answer_at_s, from_s));
-    }
+    send_answers(call, i);
     range(call, i);
     send_asked(call, i);
     places[i] = position_ned_m(i, after, to_s);
   }
   sonar::step(call.channel, after.modems(), std::span(places).first(all_.size()), from_s, to_s);
   for (std::size_t i = 0; i < all_.size(); ++i) look(call, i);
+  for (std::size_t i = 0; i < all_.size(); ++i) {
+    send_answers(call, i);  // those whose turnaround ended in the step in which the request came
+    miss_overdue(call, i);
+  }
 }
 
 }  // namespace neritic::testbed

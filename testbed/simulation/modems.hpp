@@ -34,21 +34,31 @@ class Modems {
   std::optional<std::size_t> find(OwnerSort sort, std::uint32_t owner) const;
   ModemSort sort_of(OwnerSort sort, std::uint32_t owner) const;
   const sonar::ModemWater& water() const { return water_; }
+  std::span<const sonar::ModemSettings> settings() const { return settings_; }
+  // Of one that ranges: how long its request and its target's answer last, and how long it waits.
+  // It has an answer when twice the travel, the target's turnaround and the answer are over.
+  double request_s(std::size_t modem) const;
+  double answer_s(std::size_t modem) const;
+  double wait_s(std::size_t modem) const;
   // Where a modem is; time_s: of the state.
   Vec3 position_ned_m(std::size_t modem, const PhysicsState& state, double time_s) const;
 
-  // After everything has moved: what is to be sent leaves where its sender was at the step's
-  // beginning, what arrives is heard where its receiver is at the end.
+  // After everything has moved: what is to be sent leaves where its sender was at the instant, what
+  // arrives is heard where its receiver is at the end.
   void step(const PhysicsState& before, const PhysicsInputs& inputs, const sim::StepTime& time,
             std::uint64_t seed, PhysicsState& after) const;
 
  private:
   struct Call;
-  void say(const Call& call, std::size_t modem, sonar::ModemMessage message, double at_s) const;
+  // Errors in one line, of a configuration that never gives a fix. path: the scene's.
+  Status check_ranging(const std::string& path, std::size_t modem) const;
+  bool say(const Call& call, std::size_t modem, sonar::ModemMessage message, double at_s) const;
   void send_asked(const Call& call, std::size_t modem) const;
+  void send_answers(const Call& call, std::size_t modem) const;
   void range(const Call& call, std::size_t modem) const;
   void look(const Call& call, std::size_t modem) const;
-  void fix(const Call& call, std::size_t modem, const sonar::ModemReport& answer) const;
+  void take_answer(const Call& call, std::size_t modem, const sonar::ModemReport& answer) const;
+  void miss_overdue(const Call& call, std::size_t modem) const;
 
   std::vector<PhysicsModem> all_;
   std::vector<sonar::ModemSettings> settings_;

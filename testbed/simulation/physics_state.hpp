@@ -143,27 +143,50 @@ struct LimbState {
 
 // The tasks of a modem beside its messages: answers that it owes, and its own ranging.
 struct ModemTasks {
-  std::uint64_t sent = 0;                                       // of ModemInputs::asked
-  std::uint64_t looked = 0;                                     // at reports of its ModemState
-  std::uint64_t answers = 0, answer_to = 0, answer_number = 0;  // 1: it owes an answer
-  double answer_at_s = 0.0;
+  struct Answer {
+    std::uint64_t owed = 0;  // 1: it is still to be sent
+    std::uint64_t to = 0, number = 0;
+    double at_s = 0.0;
+
+    static void fields(auto&& field, auto& self) {
+      field("owed", self.owed);
+      field("to", self.to);
+      field("number", self.number);
+      field("at_s", self.at_s);
+    }
+  };
+  struct Request {
+    std::uint64_t waits = 0;  // 1: for its answer
+    std::uint64_t number = 0;
+    double asked_s = 0.0;
+
+    static void fields(auto&& field, auto& self) {
+      field("waits", self.waits);
+      field("number", self.number);
+      field("asked_s", self.asked_s);
+    }
+  };
+  static constexpr std::size_t kOwed = 4, kAsked = 16;
+
+  std::uint64_t sent = 0;    // of ModemInputs::asked
+  std::uint64_t looked = 0;  // at reports of its ModemState
+  std::array<Answer, kOwed> answers{};
+  std::uint64_t unanswered = 0;  // requests that came while it owed kOwed answers
   // The rest: of one that ranges.
-  std::uint64_t asks = 0;  // so far
-  std::uint64_t waits = 0, asked_number = 0;
-  double asked_s = 0.0;
+  std::uint64_t asks = 0;  // intervals of which the request is made or past
+  std::array<Request, kAsked> requests{};
+  std::uint64_t fixes = 0, misses = 0;  // as many as fix.count; misses: without an answer in time
   rov::Reading<rov::UsblReading> fix;
 
   static void fields(auto&& field, auto& self) {
     field("sent", self.sent);
     field("looked", self.looked);
     field("answers", self.answers);
-    field("answer_to", self.answer_to);
-    field("answer_number", self.answer_number);
-    field("answer_at_s", self.answer_at_s);
+    field("unanswered", self.unanswered);
     field("asks", self.asks);
-    field("waits", self.waits);
-    field("asked_number", self.asked_number);
-    field("asked_s", self.asked_s);
+    field("requests", self.requests);
+    field("fixes", self.fixes);
+    field("misses", self.misses);
     field("fix", self.fix);
   }
 };

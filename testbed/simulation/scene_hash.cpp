@@ -108,6 +108,8 @@ class SceneHash {
     text(modem.usbl->target);
     numbers(modem.usbl->interval_s, modem.usbl->range_noise_m, modem.usbl->direction_noise_rad);
     number_if(modem.usbl->sound_m_s);
+    numbers(modem.usbl->offset_s);
+    number_if(modem.usbl->wait_s);
   }
 
   void add(const scene::Mount& mount) {

@@ -135,7 +135,7 @@ Result<WantedPayload> object_command(const PhysicsObject& object, const std::str
 }
 
 // A message of bytes.
-Result<ModemSend> message_of(const std::string& where, std::uint64_t modems,
+Result<ModemSend> message_of(const std::string& where, std::uint64_t by, std::uint64_t modems,
                              std::span<const double> values) {
   if (values.empty()) return refusal(where, "no number of a modem", "one, and its bytes after it");
   if (values.size() < 2 || values.size() > kModemBytes + 1)
@@ -147,6 +147,9 @@ Result<ModemSend> message_of(const std::string& where, std::uint64_t modems,
   if (!whole(values[0], static_cast<double>(modems)))
     return refusal(where, fmt::format("to {}", values[0]),
                    fmt::format("the number of a modem, 1 to {}, or 0 for all", modems));
+  if (values[0] == static_cast<double>(by))
+    return refusal(where, fmt::format("to {}, the sender itself", by),
+                   "another modem's number, or 0 for all");
   ModemSend message{.to = static_cast<std::uint64_t>(values[0]), .bytes = values.size() - 1};
   for (std::size_t i = 0; i + 1 < values.size(); ++i) {
     if (!whole(values[i + 1], 255.0))
@@ -253,7 +256,8 @@ Status World::Parts::send(std::size_t agent, const GivenCommand& command) {
     return refusal(command.where, "an agent without a modem",
                    "one whose object has the table modem");
   const auto modems = world().modems().all();
-  NERITIC_TRY(const ModemSend message, message_of(command.where, modems.size(), command.values));
+  NERITIC_TRY(const ModemSend message,
+              message_of(command.where, modem, modems.size(), command.values));
   const PhysicsModem& by = modems[modem - 1];
   return push_alone({by.sort, by.owner}, message, command.from);
 }

@@ -396,7 +396,8 @@ class Worlds(unittest.TestCase):
         self.assertAlmostEqual((message.heard - message.sent) * 1500.0, away, delta=0.3)
         self.assertGreater(message.received, message.heard)
         for call in (lambda: diver.send(b"", to="rov"), lambda: diver.send(bytes(65)),
-                     lambda: diver.send(b"x", to="fish"), lambda: rov.command("send", [9, 1]),
+                     lambda: diver.send(b"x", to="fish"), lambda: diver.send(b"x", to="diver"),
+                     lambda: rov.command("send", [9, 1]),
                      lambda: rov.command("send", [0, 256])):
             with self.assertRaises(neritic.BadInput):
                 call()

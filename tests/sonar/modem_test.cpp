@@ -74,6 +74,24 @@ TEST(Modem, BentRaysTakeTheClosedFormsTime) {
   }
 }
 
+// In a constant gradient the ray between two places at one depth arrives with the angle whose
+// tangent is g r / 2 c, from below where the speed grows with the depth.
+TEST(Modem, ABentRayArrivesFromWhereItBends) {
+  ModemWater water;
+  const double g = 0.05, c = 1480.0 + 500.0 * g, r = 2000.0;
+  water.profile = gradient(1480.0, g);
+  const Vec3 from(1200, 1600, 500), to(0, 0, 500);
+  const Vec3 straight = modem_arrival(water, from, to);
+  EXPECT_NEAR(glm::length(straight - Vec3(0.6, 0.8, 0.0)), 0.0, 1e-12);
+  water.path = ModemPath::kBent;
+  const Vec3 bent = modem_arrival(water, from, to);
+  EXPECT_NEAR(glm::length(bent), 1.0, 1e-12);
+  EXPECT_NEAR(bent.z / std::hypot(bent.x, bent.y), g * r / (2.0 * c), 1e-6);
+  EXPECT_NEAR(bent.y / bent.x, 4.0 / 3.0, 1e-12);
+  EXPECT_EQ(modem_arrival(water, Vec3(0, 0, 900), to), Vec3(0, 0, 1));
+  EXPECT_EQ(modem_arrival(water, to, to), Vec3(0, 0, 1));
+}
+
 // Spheres: 60 dB at 1 km, and 33.40 dB/km at 100 kHz, 10 C, 35 psu, pH 8, 50 m (reference values).
 TEST(Modem, LossIsSpreadingAndAbsorption) {
   ModemWater water;

@@ -11,10 +11,17 @@ namespace neritic::tools {
 using namespace testbed;
 namespace {
 
-nlohmann::json modem_json(const std::string& name, const sonar::ModemCounts& counts) {
-  nlohmann::json line{{"name", name}};
+nlohmann::json modem_json(const Modems& modems, std::size_t i, const sonar::ModemCounts& counts,
+                          const ModemTasks& tasks) {
+  const PhysicsModem& modem = modems.all()[i];
+  nlohmann::json line{{"name", modem.name}};
   sonar::ModemCounts::fields([&](const char* key, const auto& count) { line[key] = count; },
                              counts);
+  if (modem.ranging)
+    line["usbl"] = {{"target", modems.all()[modem.target].name},
+                    {"fixes", tasks.fixes},
+                    {"misses", tasks.misses}};
+  line["unanswered"] = tasks.unanswered;
   return line;
 }
 
@@ -244,8 +251,8 @@ nlohmann::json summary_json(const DiveFlags& flags, const PhysicsWorld& world,
                                           simulation.inputs().objects()[i].refused_events,
                                           sources));
   for (std::size_t i = 0; i < world.modems().all().size(); ++i)
-    json["modems"].push_back(
-        modem_json(world.modems().all()[i].name, newest.state.modems()[i].counts));
+    json["modems"].push_back(modem_json(world.modems(), i, newest.state.modems()[i].counts,
+                                        newest.state.modem_tasks()[i]));
   json["sources"] = sources_json(simulation.inbox(), pace.devices);
   json["unknown_source_samples"] = simulation.inbox().unknown_sources();
   return json;

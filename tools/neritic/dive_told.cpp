@@ -127,6 +127,19 @@ std::string modem_line(const std::string& name, const sonar::ModemCounts& counts
   return line + "\n";
 }
 
+// Of a modem that ranges: how often it found its target, and that others were asked too much.
+std::string ranging_line(const Modems& modems, std::size_t i, const ModemTasks& tasks) {
+  const PhysicsModem& modem = modems.all()[i];
+  std::string out;
+  if (modem.ranging)
+    out = fmt::format("{}: usbl: {} fixes of {}, {} requests without an answer in time\n",
+                      modem.name, tasks.fixes, modems.all()[modem.target].name, tasks.misses);
+  if (tasks.unanswered > 0)
+    out += fmt::format("{}: modem: {} requests not answered, as it owed {} answers\n", modem.name,
+                       tasks.unanswered, ModemTasks::kOwed);
+  return out;
+}
+
 // A line a live source of which samples were lost, dropped or refused.
 std::string source_lines(const SampleInbox& inbox) {
   std::string lines;
@@ -212,7 +225,8 @@ void print_summary(const DiveFlags& flags, const PhysicsWorld& world,
                group_lines<ObjectGroup>(world.objects()[i].name, newest.state.objects()[i].groups,
                                         simulation.inputs().objects()[i].refused_events, sources));
   for (std::size_t i = 0; i < world.modems().all().size(); ++i)
-    fmt::print("{}", modem_line(world.modems().all()[i].name, newest.state.modems()[i].counts));
+    fmt::print("{}{}", modem_line(world.modems().all()[i].name, newest.state.modems()[i].counts),
+               ranging_line(world.modems(), i, newest.state.modem_tasks()[i]));
   fmt::print("{}", source_lines(simulation.inbox()));
   for (const DeviceHealth& health : pace.devices) log_info("{}", health_words(health, now_ns()));
   const std::string restored =

@@ -1,5 +1,6 @@
 // Modems of a scene: messages that take their time, ranges by a USBL, and a run with both recorded,
 // repeated, saved and restored.
+#include "testbed/simulation/mission_outlook.hpp"
 #include "testbed/simulation/output_samples.hpp"
 #include "tests/testbed/simulation/dives.hpp"
 #include "tests/testbed/simulation/replay_run.hpp"
@@ -178,6 +179,134 @@ TEST(SceneModem, OutOfReachARangeIsNotHeard) {
   EXPECT_EQ(dive.state().modems()[1].counts.too_weak, 2u);
 }
 
+// Those of one that ranges bob, its noise off.
+std::string ranging(const std::string& keys, const std::string& more = {}) {
+  return "modem = { fading = false" + more +
+         ", usbl = { target = \"bob\", range_noise_m = 0, direction_noise_deg = 0" + keys +
+         " } }\n";
+}
+
+// 300 m there and back, and half a second between: an answer is whole 0.98 s after the request.
+TEST(SceneModem, AUsblThatAsksOftenWaitsForAnswersAsLongAsItIsTold) {
+  TestDive impatient = two(two_text(300.0, ranging(", interval_s = 0.8")));
+  TestDive patient = two(two_text(300.0, ranging(", interval_s = 0.4, wait_s = 1.2")));
+  for (TestDive* dive : {&impatient, &patient}) dive->run(8.2);
+  EXPECT_EQ(impatient.state().modem_tasks()[0].fixes, 0u);
+  EXPECT_EQ(impatient.state().modem_tasks()[0].misses, 10u);
+  const ModemTasks& tasks = patient.state().modem_tasks()[0];
+  EXPECT_EQ(tasks.misses, 0u);
+  EXPECT_EQ(tasks.fixes, 19u);  // of 21 requests, two of which have not come back
+  EXPECT_EQ(tasks.fix.count, 19u);
+  EXPECT_NEAR(tasks.fix.value.range_m, 300.0, 0.02);
+}
+
+// eve, 30 m east of ada, asks while bob still owes ada an answer.
+TEST(SceneModem, AModemAnswersEachOfSeveralThatAskIt) {
+  const std::string eve =
+      rov_text("position_m = [30, -6, 0]\n" + ranging(", offset_s = 0.2"), "eve");
+  TestDive dive = two(two_text(400.0, ranging("")) + eve);
+  dive.run(9.9);
+  for (const std::size_t modem : {0u, 2u}) {
+    const ModemTasks& tasks = dive.state().modem_tasks()[modem];
+    EXPECT_EQ(tasks.fixes, 5u) << modem;
+    EXPECT_EQ(tasks.misses, 0u) << modem;
+  }
+  EXPECT_NEAR(dive.state().modem_tasks()[2].fix.value.bearing_rad, std::atan2(-30.0, 400.0), 1e-3);
+  EXPECT_EQ(dive.state().modem_tasks()[1].unanswered, 0u);
+  // At the same instants their requests collide at bob, which is told before.
+  const std::string together =
+      two_text(400.0, ranging("")) + rov_text("position_m = [30, -6, 0]\n" + ranging(""), "eve");
+  TestDive lost = two(together);
+  lost.run(9.9);
+  EXPECT_EQ(lost.state().modem_tasks()[0].fixes + lost.state().modem_tasks()[2].fixes, 0u);
+  EXPECT_EQ(lost.state().modem_tasks()[0].misses, 4u);
+  const auto told = cannot_hold(*lost.world);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_NE(told[0].find("ada, eve: usbl: both ask at the same instants"), std::string::npos)
+      << told[0];
+}
+
+TEST(SceneModem, TheFirstRequestLeavesAtItsOffset) {
+  TestDive dive = two(two_text(400.0, ranging(", offset_s = 0.7")));
+  dive.run(0.69);
+  EXPECT_EQ(dive.state().modems()[0].counts.sent, 0u);
+  dive.run(0.1);
+  EXPECT_EQ(dive.state().modems()[0].counts.sent, 1u);
+  dive.run(1.8);
+  EXPECT_EQ(dive.state().modems()[0].counts.sent, 1u);
+  dive.run(0.2);
+  EXPECT_EQ(dive.state().modems()[0].counts.sent, 2u);
+}
+
+// The turnaround is the request's own duration, so that the answer is due in the very step in which
+// the request is whole; also where it comes back before the next one.
+TEST(SceneModem, AnAnswerLeavesAtItsInstantWithinAStep) {
+  for (const double north_m : {400.0, 3.0}) {
+    std::string text = two_text(north_m, ranging(""));
+    const std::string modem = "modem = { fading = false }";
+    text.replace(text.rfind(modem), modem.size(),
+                 "modem = { fading = false, turnaround_s = 0.066 }");
+    TestDive dive = two(text);
+    dive.run(1.9);
+    const auto& fix = dive.state().modem_tasks()[0].fix;
+    ASSERT_EQ(fix.value.heard, 1u);
+    EXPECT_NEAR(fix.value.range_m, north_m, 0.01);
+    EXPECT_NEAR(fix.value.travel_s, 2.0 * north_m / 1489.90, 1e-5);
+  }
+}
+
+// A ship 100 m north of ada that sails east at 20 m/s: the direction is that of the beacon as its
+// answer left, not of where it is as the answer's last bit comes.
+TEST(SceneModem, TheDirectionIsThatFromWhichTheAnswerComes) {
+  std::string text = sailing_text(
+      "{ pose = \"autopilot\" }",
+      "modem = { fading = false, usbl = { target = \"beacon\", interval_s = 4, range_noise_m = 0, "
+      "direction_noise_deg = 0 } }\n");
+  const std::string north = "[[0, -6, -100], [0, -6, -2100]]";
+  text.replace(text.find(north), north.size(), "[[0, -6, -60], [2000, -6, -60]]");
+  TestDive dive = two(text);
+  dive.run(3.9);
+  const auto& fix = dive.state().modem_tasks()[1].fix;
+  ASSERT_EQ(fix.value.heard, 1u);
+  // The box faces along its track, so that the beacon is 40 m ahead of the ship.
+  const auto beacon = [](double time_s) { return Vec3(60.0, 40.0 + 20.0 * time_s, 6.0); };
+  const double there_s = glm::length(beacon(0.0) - Vec3(0, 0, 6)) / 1489.90;
+  const Vec3 left = beacon(there_s + 0.5);
+  EXPECT_NEAR(fix.value.bearing_rad, std::atan2(left.y, left.x), 2e-4);
+  const Vec3 later = beacon(fix.time_s);
+  EXPECT_GT(std::atan2(later.y, later.x) - fix.value.bearing_rad, 5e-3);
+}
+
+TEST(SceneModem, WhatGivesNoFixAtTheStartIsToldBefore) {
+  const auto told = [](const std::string& text) {
+    std::string out;
+    for (const std::string& line : cannot_hold(*two(text).world)) out += line + "\n";
+    return out;
+  };
+  EXPECT_EQ(told(two_text(300.0, ranging(""))), "");
+  EXPECT_NE(told(two_text(300.0, ranging(", interval_s = 0.8")))
+                .find("ada: usbl: at the start, 300 m apart, bob's answer comes 0.985 s after"),
+            std::string::npos)
+      << told(two_text(300.0, ranging(", interval_s = 0.8")));
+  EXPECT_NE(
+      told(two_text(300.0, ranging("", ", source_level_db = 60"))).find("request reaches bob"),
+      std::string::npos);
+  EXPECT_NE(told(two_text(300.0, ranging("", ", self_noise_db = 150")))
+                .find("answer comes from bob with"),
+            std::string::npos);
+  std::string above = two_text(300.0, ranging(""));
+  above.replace(above.find("[0, -6, -300]"), 13, "[0, 2, -300]");
+  EXPECT_NE(told(above).find("bob's modem is 2 m above the surface"), std::string::npos);
+}
+
+TEST(SceneModem, AMessageToItselfIsRefused) {
+  TestDive dive = two(two_text(300.0));
+  say(dive, "ada/send", 1, 4);
+  const auto got = heard(dive, "ada/modem", 0.2);
+  ASSERT_EQ(got.size(), 1u);
+  EXPECT_EQ(got[0].event, ModemEvent::kRefused);
+}
+
 TEST(SceneModem, ARunIsRepeatedBitForBitAndGoesOnFromASavedState) {
   const std::string text = two_text(700.0, "modem = { usbl = { target = \"bob\" } }\n",
                                     "[acoustics]\nspreading = 1.5\n");
@@ -226,6 +355,20 @@ TEST(SceneModem, WrongKeysAreRefusedInOneLine) {
             std::string::npos);
   EXPECT_NE(refused(two_text(9.0, "modem = { usbl = { target = \"eve\" } }\n"))
                 .find("found 'eve'; accepted: bob"),
+            std::string::npos);
+  EXPECT_NE(refused(two_text(9.0, ranging(", wait_s = 31"))).find("15 times the interval, 30 s"),
+            std::string::npos);
+  // What never gives a fix, at any range.
+  EXPECT_NE(refused(two_text(9.0, ranging(", interval_s = 0.58")))
+                .find("modem.usbl.interval_s: found 0.58; accepted: more than 0.582, bob's"),
+            std::string::npos);
+  EXPECT_NE(refused(two_text(9.0, ranging(", wait_s = 0.5"))).find("usbl.wait_s: found 0.5"),
+            std::string::npos);
+  EXPECT_NE(refused(two_text(9.0, ranging(", interval_s = 0.14, wait_s = 1")))
+                .find("accepted: more than 0.148, its request and bob's answer"),
+            std::string::npos);
+  EXPECT_NE(refused(two_text(9.0, ranging("", ", frequency_hz = 60e3")))
+                .find("found 60000, 8000 wide; accepted: a band that bob hears: 25000"),
             std::string::npos);
   EXPECT_NE(refused(std::string(kStillWater) + rov_text("") +
                     "[[objects]]\nname = \"rock\"\nshape = \"box\"\nmodem = {}\n")
