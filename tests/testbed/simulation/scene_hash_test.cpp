@@ -337,6 +337,8 @@ std::vector<KeyTable> vehicle_tables() {
        },
        {{"target", "target = \"post\"", "target = \"rock\""},
         {"interval_s", "target = \"post\"", "target = \"post\", interval_s = 3"},
+        {"offset_s", "target = \"post\"", "target = \"post\", offset_s = 0.5"},
+        {"wait_s", "target = \"post\"", "target = \"post\", wait_s = 4"},
         {"range_noise_m", "target = \"post\"", "target = \"post\", range_noise_m = 0.1"},
         {"direction_noise_deg", "target = \"post\"", "target = \"post\", direction_noise_deg = 1"},
         {"sound_m_s", "target = \"post\"", "target = \"post\", sound_m_s = 1490"}}},
