@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/refusal.hpp"
+#include "rov/ventilation.hpp"
 
 namespace neritic::rov {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 // Below this a mass matrix (scaled to a unit diagonal) counts as singular.
 constexpr double kSingular = 1e-9;
 constexpr double kLargest = 1e9;  // of any parameter, in SI units
+constexpr double kLargestPropeller_m = 20.0;
 
 bool within(double value, double least) {
   return value >= least && value <= kLargest;
@@ -74,6 +76,9 @@ Status check_thrusters(const std::vector<Thruster>& thrusters) {
       return refusal(fmt::format("thrusters[{}]", i),
                      fmt::format("forces from {} to {} N", t.min_n, t.max_n),
                      "from [-1e9, 0] to [0, 1e9]");
+    if (!(t.propeller_m >= 0.0 && t.propeller_m <= kLargestPropeller_m))
+      return refusal(fmt::format("thrusters[{}].propeller_m", i), fmt::format("{}", t.propeller_m),
+                     fmt::format("[0, {}]", kLargestPropeller_m));
   }
   return {};
 }
@@ -142,6 +147,8 @@ Result<Vehicle> make_vehicle(const VehicleParameters& p) {
     const Thruster& t = p.thrusters[i];
     v.thrusters[i] = t;
     v.thruster_wrench[i] = vec6(t.direction, glm::cross(t.position_m, t.direction));
+    v.ventilates_m = std::max(v.ventilates_m,
+                              glm::length(t.position_m) + kVentilatedRadii * 0.5 * t.propeller_m);
   }
   v.lag = p.lag;
   v.tether = p.tether;

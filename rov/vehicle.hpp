@@ -27,6 +27,7 @@ struct Thruster {
   Vec3 direction{1.0, 0.0, 0.0};
   // The motor's limits; a command beyond is clamped.
   double min_n = -1e9, max_n = 1e9;
+  double propeller_m = 0.076;  // its diameter: near the surface it draws air (ventilation.hpp)
 };
 
 // Symbols as in Fossen, "Handbook of Marine Craft Hydrodynamics and Motion Control" (2011).
@@ -63,6 +64,7 @@ struct Vehicle {
   std::uint32_t thruster_count = 0;
   std::array<Thruster, kMaxThrusters> thrusters;
   std::array<Vec6, kMaxThrusters> thruster_wrench;  // of one newton each: the columns of B
+  double ventilates_m = 0.0;  // none of its propellers draws air where the origin is deeper
   PreparedLag lag;
   std::optional<Tether> tether;
   // Cached for quick steps (prepare_steps()); other steps compute it.

@@ -41,7 +41,8 @@ constexpr std::string_view kVehicleKeys[] = {"name",
                                              "usbl"};
 constexpr std::string_view kPathKeys[] = {"thrust_table"};
 constexpr std::string_view kLagKeys[] = {"kind", "time_s", "a2", "a1", "a0", "b1"};
-constexpr std::string_view kThrusterKeys[] = {"name", "position_m", "direction", "min_n", "max_n"};
+constexpr std::string_view kThrusterKeys[] = {"name",  "position_m", "direction",
+                                              "min_n", "max_n",      "propeller_m"};
 constexpr std::string_view kTetherKeys[] = {"attachment_m",   "length_m",        "diameter_m",
                                             "net_weight_n_m", "stiffness_n",     "damping_n_s",
                                             "normal_drag",    "tangential_drag", "water_kg_m3"};
@@ -119,6 +120,8 @@ void read_thrusters(const CaseField& list, VehicleParameters& p) {
       at["direction"].refuse("a vector that is not 0");
     thruster.min_n = at["min_n"].number(thruster.min_n, -1e9, 0.0);
     thruster.max_n = at["max_n"].number(thruster.max_n, 0.0, 1e9);
+    thruster.propeller_m = at["propeller_m"].number(
+        p.battery ? p.battery->propeller_m : thruster.propeller_m, 0.0, 20.0);
     p.thrusters.push_back(thruster);
   }
 }
@@ -180,7 +183,6 @@ Result<VehicleFile> parse_vehicle(std::string_view text, const std::string& name
   VehicleParameters& p = out.parameters;
   out.gravity_m_s2 = root["gravity_m_s2"].number(kGravity, 0.0, 100.0);
   read_body(root, water_kg_m3, out.gravity_m_s2, p);
-  read_thrusters(root["thrusters"], p);
   if (root["lag"].present()) read_lag(root["lag"], p.lag);
   if (root["tether"].present()) {
     p.tether = Tether{.water_kg_m3 = water_kg_m3};
@@ -190,6 +192,7 @@ Result<VehicleFile> parse_vehicle(std::string_view text, const std::string& name
     p.battery = Battery{.water_kg_m3 = water_kg_m3};
     read_battery(root["battery"], *p.battery);
   }
+  read_thrusters(root["thrusters"], p);
   out.gains = default_gains();
   if (root["control"].present()) read_gains(root["control"], out.gains);
   out.voltage_v = root["voltage_v"].number(16.0, 1.0, 1000.0);
