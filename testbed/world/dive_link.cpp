@@ -22,9 +22,11 @@ Status DiveLink::accept(const sim::Snapshot<PhysicsState>& step, std::span<const
   // Programs outside go by simulated time, samples by the host's clock.
   const TimeNs shift_ns = step.scene_from_host_ns();
   const std::lock_guard lock(mutex_);
-  if (waiting_.size() + outputs.size() > kMostWaiting)
-    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(std::min(
-                                                            waiting_.size(), kMostWaiting / 2)));
+  if (waiting_.size() + outputs.size() > kMostWaiting) {
+    const std::size_t oldest = std::min(waiting_.size(), kMostWaiting / 2);
+    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(oldest));
+    missed_ += oldest;
+  }
   for (Sample sample : outputs) {
     sample.header.captured_ns += shift_ns;
     sample.header.arrived_ns += shift_ns;
@@ -35,11 +37,13 @@ Status DiveLink::accept(const sim::Snapshot<PhysicsState>& step, std::span<const
 
 Status DiveLink::poll(SampleInbox&, double) {
   taken_.clear();
+  std::uint64_t missed = 0;
   {
     const std::lock_guard lock(mutex_);
     std::swap(taken_, waiting_);
+    std::swap(missed, missed_);
   }
-  world_->receive(taken_);
+  world_->receive(taken_, missed);
   if (act_) act_();
   return {};
 }

@@ -14,6 +14,9 @@ namespace neritic::testbed {
 
 class DiveLink final : public StepSink, public SampleSource {
  public:
+  // While frames are slower than these, the oldest half goes; World::dropped() counts them.
+  static constexpr std::size_t kMostWaiting = 1 << 15;
+
   // Borrows all; devices: null where the scene's are not listened to.
   static Result<std::unique_ptr<DiveLink>> create(LivePhysics& physics, const scene::Scene& scene,
                                                   const std::string& path, const Devices* devices);
@@ -31,15 +34,13 @@ class DiveLink final : public StepSink, public SampleSource {
  private:
   DiveLink(const LivePhysics& physics, std::unique_ptr<World> world);
 
-  // While frames are slower than these, the oldest go.
-  static constexpr std::size_t kMostWaiting = 1 << 15;
-
   std::unique_ptr<World> world_;
   std::vector<StreamId> outputs_;
   std::function<void()> act_;
   std::vector<Sample> taken_;  // the loop's
   std::mutex mutex_;           // of what follows
   std::vector<Sample> waiting_;
+  std::uint64_t missed_ = 0;  // dropped since the last poll
 };
 
 }  // namespace neritic::testbed

@@ -209,8 +209,9 @@ Result<std::size_t> World::agent(const std::string& name) const {
   return unknown_name("agent", name, names);
 }
 
-void World::receive(std::span<const Sample> outputs) {
+void World::receive(std::span<const Sample> outputs, std::uint64_t missed) {
   Parts& parts = *parts_;
+  parts.receiver->dropped += missed;
   if (parts.restored != parts.physics->restored()) {
     // By the display's keys: all that is on its way belongs to another time.
     parts.restored = parts.physics->restored();

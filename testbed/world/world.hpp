@@ -233,8 +233,9 @@ class World {
   Result<Truth> truth(const std::string& agent) const;
   // kBadInput for an agent that is no diver.
   Result<Instruments> instruments(const std::string& agent) const;
-  // An attached world: samples that left its physics, in their order, with simulated times.
-  void receive(std::span<const Sample> outputs);
+  // An attached world: samples that left its physics, in their order, with simulated times. missed:
+  // how many before them did not come; they count as dropped.
+  void receive(std::span<const Sample> outputs, std::uint64_t missed = 0);
 
   // The whole state as bytes, and back at once; images and readings on their way are dropped. A
   // command that acted when it was saved goes on acting, until release() or another command.

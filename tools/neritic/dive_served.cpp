@@ -26,6 +26,15 @@ Result<ServerOptions> server_options(const std::string& flag, const std::string&
   return options;
 }
 
+std::string ServedDive::missed_words() const {
+  const std::uint64_t dropped = link_->world().dropped();
+  if (dropped == 0) return {};
+  return fmt::format(
+      "--serve: {} readings dropped, which came faster than frames or programs took "
+      "them",
+      dropped);
+}
+
 ServedDive::ServedDive(std::unique_ptr<DiveLink> link)
     : link_(std::move(link)), served_(link_->world(), hand_off_, {.real_time = true}) {
   link_->each_turn([this] { served_.turn(); });

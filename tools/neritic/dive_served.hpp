@@ -26,6 +26,8 @@ class ServedDive {
   testbed::DiveLink& link() { return *link_; }
   // For the loop's sensors: the images that clients want.
   testbed::ImageConsumer* images() { return link_->world().images(); }
+  // A line where programs missed readings, else none.
+  std::string missed_words() const;
   Address address() const { return server_->address(); }
 
  private:
