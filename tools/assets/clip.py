@@ -55,5 +55,8 @@ def rim(part, on_cut, offset):
     base = np.arange(len(e))[:, None] * 4
     # reversed against the skin's own edge direction
     tri = np.concatenate([base + [1, 0, 3], base + [1, 3, 2]])
-    uv = np.stack([pos[:, 2], pos[:, 1]], 1)
+    # Across the wall by the offset's length; along it by the coordinate that changes most.
+    along, across = np.repeat(np.abs(b - a).argmax(1), 4), np.linalg.norm(offset, axis=1)
+    depth = np.stack([0 * across[e[:, 1]], 0 * across[e[:, 0]], across[e[:, 1]], across[e[:, 0]]], 1).reshape(-1)
+    uv = np.stack([np.take_along_axis(pos, along[:, None], 1)[:, 0], depth], 1)
     return Part(pos, tri, uv)
