@@ -35,7 +35,7 @@ name = "diver"
 model = ")" + assets + R"(/models/diver.glb"
 human = "d.toml"
 jacket_buttons = "b.csv"
-modem = {}
+modem = { usbl = { target = "rov" } }
 position_m = [0, -150, 0]
 pitch_deg = -90
 [[vehicles]]
@@ -44,6 +44,7 @@ shape = "box"
 size_m = [0.57, 0.26, 0.46]
 dynamics = ")" + assets + R"(/vehicles/bluerov2_heavy_survey_dynamics.toml"
 position_m = [3, -150, 0]
+modem = {}
 inputs = { setpoint = "planner" }
 tether = { from_m = [3, -140, 0], length_m = 20, segments = 2 }
 mission = { waypoints = [ { position_m = [3, -150, -1] } ] }
