@@ -127,6 +127,22 @@ diver::GazeState gaze_ned(const Gaze& gaze) {
   return state;
 }
 
+// Whether what acts on the group is another than in the step before: an authority, or a source.
+bool changed(const GroupState& before, const GroupState& now) {
+  const Authority acts = acting(now);
+  return acts != acting(before) || (acts == Authority::kLive && now.source != before.source);
+}
+
+// The parts of the limbs that poses place, and whether muscles move them at all: a hand that
+// ceases to be tracked, and limbs that go slack, change who moves them as well.
+std::uint64_t moved_parts(const DiverInputs& inputs, bool head, bool hands, bool conscious) {
+  std::uint64_t parts = conscious ? 0 : 1;
+  if (hands && inputs.hands_by_pose == 0) parts |= 2;
+  if (hands && inputs.hands_by_pose != 0) parts |= (inputs.hand_poses.tracked & 3) << 2;
+  if (head && (inputs.head.placed & kHeadPlaced)) parts |= 16;
+  return parts;
+}
+
 // Where slack muscles let limbs go: straight.
 void relax(double share, diver::JointRotations& joints) {
   constexpr double kThere = 1e-9;
@@ -165,6 +181,7 @@ void move_body(const PhysicsHuman& human, const DiverInputs& inputs, Authority a
 diver::HumanInputs acting_inputs(const PhysicsHuman& human, const DiverInputs& inputs,
                                  std::uint64_t step, double dt_s, const Ability& able,
                                  HumanPhysics& state) {
+  const std::array<GroupState, kDiverGroups> before = state.groups;
   for (std::size_t i = 0; i < kDiverGroups; ++i)
     state.groups[i] = next_group(state.groups[i], inputs.control[i], step, dt_s);
   const auto authority = [&](DiverGroup group) {
@@ -194,6 +211,17 @@ diver::HumanInputs acting_inputs(const PhysicsHuman& human, const DiverInputs& i
     targets.hands[1]->position_m = place_in_body(state.human, {*able.hand_to_m, {}});
     out.joints = diver::reach(human.body, out.joints, targets);
   }
+
+  const auto another = [&](DiverGroup group) {
+    const auto i = static_cast<std::size_t>(group);
+    return changed(before[i], state.groups[i]);
+  };
+  const std::uint64_t parts = moved_parts(inputs, head, hands, able.conscious);
+  if (another(DiverGroup::kBody) || another(DiverGroup::kHands) || another(DiverGroup::kHead) ||
+      parts != state.ease.parts)
+    begin_ease(state.ease, state.human.held.joints, out.joints, dt_s);
+  state.ease.parts = parts;
+  step_ease(state.ease, out.joints, dt_s);
 
   const Authority buttons = authority(DiverGroup::kButtons);
   if (buttons == Authority::kLive)

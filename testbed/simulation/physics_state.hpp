@@ -18,6 +18,7 @@
 #include "rov/sensor_set.hpp"
 #include "sonar/modem.hpp"
 #include "testbed/samples/inbox.hpp"
+#include "testbed/simulation/joint_ease.hpp"
 #include "testbed/simulation/physics_inputs.hpp"
 
 namespace neritic::testbed {
@@ -98,10 +99,12 @@ struct HumanPhysics {
   std::uint64_t tank = 0;
   diver::GasSwitchState gas_switch;
   std::array<GroupState, kDiverGroups> groups;  // of the inputs
+  JointEase ease;                               // after a change of who moves the limbs
 
   static void fields(auto&& field, auto& self) {
     fields_but_groups(field, self);
     field("groups", self.groups);
+    field("ease", self.ease);
   }
   static void fields_but_groups(auto&& field, auto& self) {
     field("human", self.human);
@@ -371,8 +374,9 @@ class PhysicsState
     auto earlier = self.earlier();
     field("earlier", earlier);
   }
-  // The hash covers groups once a live source was asked for, but no numbers of sources, and of the
-  // kinds after the first three those that the scene has.
+  // The hash covers groups once a live source was asked for, but no numbers of sources, the joints
+  // of divers while they are eased, and of the kinds after the first three those that the scene
+  // has.
   std::span<const std::uint64_t> hashed_counts() const {
     std::size_t kinds = kKinds;
     while (kinds > 3 && counts()[kinds - 1] == 0) --kinds;
@@ -388,7 +392,10 @@ class PhysicsState
         }
     };
     for (auto& vehicle : self.vehicles()) add(vehicle);
-    for (auto& human : self.humans()) add(human);
+    for (auto& human : self.humans()) {
+      add(human);
+      if (human.ease.left_s > 0.0) field("ease", human.ease);
+    }
     for (auto& object : self.objects()) add(object);
     auto readings = self.readings();
     auto navigation = self.navigation();
