@@ -21,6 +21,10 @@ xr::PanelLayer over_pixels(const xr::ViewGroup& group, double left, double top, 
           .size_m = {across * width, down * height}};
 }
 
+// By this the wrist's instrument lies higher before the eyes where the mask's is shown as well:
+// clear of it for each eye, up to 74 mm apart, at the same distance.
+constexpr double kAboveMask_rad = 0.4;
+
 // Where in the view the gaze goes, 0 to 1 from left and top; nothing where it is not measured or
 // goes elsewhere.
 std::optional<Vec2> gaze_in(const std::optional<Vec3>& gaze, const HudView& view) {
@@ -299,7 +303,9 @@ xr::PanelLayer DiveHud::place(const Instrument& instrument, const HudView& view,
         panel.lock = xr::PanelLayer::Lock::kWorld;
         panel.pose = *view.world_from_wrist * layout.lock_from_panel;
       } else {
-        panel.pose = layout.head_from_panel;
+        const bool masked = shown(hud::LayoutKind::kMask);
+        panel.pose = Pose{Vec3(0.0), from_yaw_pitch_roll(0.0, masked ? kAboveMask_rad : 0.0, 0.0)} *
+                     layout.head_from_panel;
       }
       break;
     case hud::Lock::kWorld:

@@ -42,7 +42,7 @@ struct HudView {
   Pose world_from_stage;       // the display's space
   Pose world_from_view;        // of that first view
   // The left hand that instruments are worn on, at the wrist; absent: it is not tracked, and they
-  // are held before the eyes.
+  // are held before the eyes, above the mask's where that is shown.
   std::optional<Pose> world_from_wrist = {};
   bool stage_at_eyes = false;  // the stage's origin is where the head was, not the floor
   // When the picture is seen, on a clock that neither stops nor hurries with the scene's; where

@@ -59,6 +59,8 @@ TEST_F(DivePhysics, FlagsThatDoNotFitEndInOneLine) {
       {"--headless --log-rate 7", "dive.toml", "--log-rate: found no --log beside it"},
       {"--headless --diver ada", "dive.toml", "--diver: found --headless without --hud"},
       {"--headless --units imperial", "dive.toml", "--units: found --headless without --hud"},
+      {"--headless --hud wrist,wrist", "dive.toml",
+       "--hud: found wrist twice in 'wrist,wrist'; accepted: each name once"},
       {"--headless --refresh 90", "dive.toml", "--refresh: found --headless beside it"},
       {"--headless --swim", "dive.toml", "--swim: found --headless beside it"},
       {"--headless --task look", "dive.toml", "--task: found --headless beside it"},

@@ -16,7 +16,9 @@ Result<std::vector<hud::LayoutKind>> hud_layouts(const std::string& text) {
     if (!layout)
       return refusal("--hud", fmt::format("'{}'", name),
                      "none, or any of corner, mask, wrist, console with commas between");
-    if (std::ranges::find(out, *layout) == out.end()) out.push_back(*layout);
+    if (std::ranges::find(out, *layout) != out.end())
+      return refusal("--hud", fmt::format("{} twice in '{}'", name, text), "each name once");
+    out.push_back(*layout);
     begin = end + 1;
   }
   return out;

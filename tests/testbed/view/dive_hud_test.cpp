@@ -325,5 +325,56 @@ TEST_F(DiveHudTest, AHeadsetLocksEachToItsFrame) {
   EXPECT_LT(held.pose.position_m.z, 0.0);
 }
 
+// The angles from an eye to a panel in the head's frame, flat or bent, in degrees.
+struct Angles {
+  double left = 1e9, right = -1e9, bottom = 1e9, top = -1e9;
+};
+Angles angles_from(const Vec3& eye_m, const xr::PanelLayer& panel, bool bent) {
+  constexpr int kParts = 40;
+  Angles out;
+  for (int i = 0; i <= kParts; ++i)
+    for (int j = 0; j <= kParts; ++j) {
+      const Vec2 at = panel.size_m * (Vec2(i, j) / double{kParts} - 0.5);
+      const double r = bent ? panel.radius_m : 0.0;
+      const Vec3 on = r > 0.0 ? Vec3(r * std::sin(at.x / r), at.y, r - r * std::cos(at.x / r))
+                              : Vec3(at.x, at.y, 0.0);
+      const Vec3 to = panel.pose * on - eye_m;
+      const double right = degrees(std::atan2(to.x, -to.z)), up = degrees(std::atan2(to.y, -to.z));
+      out.left = std::min(out.left, right), out.right = std::max(out.right, right);
+      out.bottom = std::min(out.bottom, up), out.top = std::max(out.top, up);
+    }
+  return out;
+}
+
+// Nearer than the mask's, the wrist's covered its left end in the left eye.
+TEST_F(DiveHudTest, WithoutAHandTheWristsIsClearOfTheMasksForEachEye) {
+  const auto held_with = [&](std::vector<hud::LayoutKind> layouts) {
+    DiveHud hud(device(), *frames_, *physics_, {.layouts = std::move(layouts)});
+    graph::FrameGraph graph;
+    std::vector<xr::Layer> layers;
+    const Status status = hud.declare(graph, {group_, true, {}, {}}, layers);
+    EXPECT_TRUE(status.ok());
+    std::vector<xr::PanelLayer> out;
+    for (const xr::Layer& layer : layers) out.push_back(std::get<xr::PanelLayer>(layer));
+    return out;
+  };
+  const auto both = held_with({hud::LayoutKind::kWrist, hud::LayoutKind::kMask});
+  ASSERT_EQ(both.size(), 2u);
+  for (const double eye_m : {-0.037, -0.032, 0.0, 0.032, 0.037})
+    for (const bool bent : {false, true}) {
+      const Angles wrist = angles_from({eye_m, 0, 0}, both[0], bent);
+      const Angles mask = angles_from({eye_m, 0, 0}, both[1], bent);
+      EXPECT_TRUE(wrist.right < mask.left - 1.0 || wrist.bottom > mask.top + 1.0)
+          << eye_m << " " << wrist.right << " " << mask.left << " " << wrist.bottom << " "
+          << mask.top;
+      EXPECT_GT(wrist.left, -45.0);
+    }
+  // As near as alone, where it stays in its place.
+  const auto alone = held_with({hud::LayoutKind::kWrist});
+  const hud::Layout& layout = hud::layout_of(hud::LayoutKind::kWrist);
+  EXPECT_EQ(alone.at(0).pose.position_m, layout.head_from_panel.position_m);
+  EXPECT_NEAR(glm::length(both[0].pose.position_m), glm::length(alone[0].pose.position_m), 1e-9);
+}
+
 }  // namespace
 }  // namespace neritic::testbed
