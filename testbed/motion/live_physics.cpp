@@ -155,6 +155,10 @@ double LivePhysics::follow_thread(TimeNs display_ns) {
   history_.add(motion_of(*world_, reader_->previous()));
   history_.add(motion_of(*world_, newest));
   trace(newest);
+  // After the last step a display may lag behind by so much; one whose time stands would never
+  // show the end.
+  constexpr TimeNs kMostLag_ns = 1'000'000'000;
+  if (ended() && clock_->now() - newest.due_ns > kMostLag_ns) return newest.time_s;
   return newest.time_s + 1e-9 * static_cast<double>(display_ns - newest.due_ns);
 }
 

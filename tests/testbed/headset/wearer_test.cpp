@@ -114,6 +114,18 @@ TEST_F(HeadsetWearer, SeldomFramesAreNoSilence) {
   EXPECT_LE(head.losses, 1u);  // before the first such frames
 }
 
+// A runtime whose time hardly moves: by its frames the half second would last for 50 000 of them.
+TEST_F(HeadsetWearer, ADiveOfSoManySecondsEndsThoughTheRuntimesTimeStands) {
+  fakes::FakeHeadset fake("size 16 16\nperiod 0.00001\nhead 0 0 1.6 0\n");
+  NERITIC_ASSERT_OK(physics_, LivePhysics::create(scene_, LivePhysics::Pace::kClock));
+  with(*physics_);
+  end_after(0.5);
+  const TimeNs begun_ns = now_ns();
+  NERITIC_ASSERT_STATUS(dive(scene_, 0));
+  EXPECT_GE(physics_->newest().time_s, 0.5 - 1e-9);
+  EXPECT_LT(now_ns() - begun_ns, 60'000'000'000);
+}
+
 // A wearer who holds still neither rows nor brakes the diver who swims on by plan, however seldom
 // frames come.
 TEST_F(HeadsetWearer, WhatIsTrackedRidesWithTheBodyThatSwimsOn) {
