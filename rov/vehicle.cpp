@@ -12,7 +12,6 @@ namespace {
 // Below this a mass matrix (scaled to a unit diagonal) counts as singular.
 constexpr double kSingular = 1e-9;
 constexpr double kLargest = 1e9;  // of any parameter, in SI units
-constexpr double kLargestPropeller_m = 20.0;
 
 bool within(double value, double least) {
   return value >= least && value <= kLargest;

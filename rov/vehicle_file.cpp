@@ -9,6 +9,7 @@
 #include "engine/core/refusal.hpp"
 #include "rov/bluerov2.hpp"
 #include "rov/sensor_file.hpp"
+#include "rov/ventilation.hpp"
 
 namespace neritic::rov {
 namespace {
@@ -121,7 +122,7 @@ void read_thrusters(const CaseField& list, VehicleParameters& p) {
     thruster.min_n = at["min_n"].number(thruster.min_n, -1e9, 0.0);
     thruster.max_n = at["max_n"].number(thruster.max_n, 0.0, 1e9);
     thruster.propeller_m = at["propeller_m"].number(
-        p.battery ? p.battery->propeller_m : thruster.propeller_m, 0.0, 20.0);
+        p.battery ? p.battery->propeller_m : thruster.propeller_m, 0.0, kLargestPropeller_m);
     p.thrusters.push_back(thruster);
   }
 }

@@ -11,7 +11,7 @@ namespace {
 constexpr double kLoss = 0.675, kLossPower = 1.258;
 constexpr double kLeastHalfHeight = 0.5;  // of the radius: a nozzle's that lies
 
-// Of a disc whose middle is x half heights under the surface, -1 to 1.
+// The share of a disc's area under water, if its middle is x of its half height deep, -1 to 1.
 double submerged_share(double x) {
   return 0.5 + (x * std::sqrt(1.0 - x * x) + std::asin(x)) / kPi;
 }

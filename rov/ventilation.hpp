@@ -19,6 +19,7 @@
 namespace neritic::rov {
 
 inline constexpr double kVentilatedRadii = 1.3;
+inline constexpr double kLargestPropeller_m = 20.0;  // that a vehicle may have
 
 // The share, 0 to 1. depth_m: of the shaft under the surface where it is, negative in air;
 // shaft_down: the vertical component of the unit vector along it. A radius of 0 is in the water or

@@ -142,8 +142,8 @@ vec2 skylight_at(ivec3 at, float planar_m) {
   return from_coarser(skylight_image, float(kSkylightStep), at, 0.5 * visibility_distance(planar_m)).rg;
 }
 
-// What stands over the sea in a mirror's way, as far as the picture shows it: its radiance, and 1 where there is some.
-// Lit by the sun and the sky without shadows. For things near the surface, as hulls: the way is searched for 6 m.
+// Looks from a place on the sea along a mirrored sight for things that the picture shows too, hulls for example, up to 6 m
+// away. Gives their radiance, lit by the sun and the sky without shadows, and 1 in w; all 0 if there is nothing.
 vec4 mirrored_at(vec3 from, vec3 way, uint layer) {
   vec3 eye = views[layer].eye, dx = views[layer].ray_dx, dy = views[layer].ray_dy, corner = views[layer].ray_corner;
   float near_m = views[layer].near_m, before_m = 0.0, dx2 = dot(dx, dx), dy2 = dot(dy, dy);
@@ -254,7 +254,9 @@ void main() {
   if (light_has(kLightSurface) && meets && from_above) {
     vec3 place = eye + direction * surface.distance_m;
     surface = rippled(surface, place.xz, pixel_rad * surface.distance_m * inversesqrt(max(-direction.y, 0.05)));
-    vec4 mirrored = mirrored_at(place, sea_mirror(surface, direction), layer);
+    vec3 normal = sea_normal(surface);
+    vec3 way = sea_mirror(direction, normal, max(dot(-direction, normal), 0.0));
+    vec4 mirrored = mirrored_at(place, way, layer);
     radiance = sea_from_above(surface, eye, direction, radiance, mirrored, pixel_rad);
   }
   radiance += lamp_glow(eye, direction, sight_m);

@@ -123,6 +123,15 @@ ModemBand modem_band(const ModemSettings& sender, const ModemSettings& receiver)
   return {std::min((to_hz - from_hz) / sender.bandwidth_hz, 1.0), 0.5 * (from_hz + to_hz)};
 }
 
+std::optional<double> modem_level_db(const ModemWater& water, const ModemSettings& sender,
+                                     const ModemSettings& receiver, const Vec3& from_ned_m,
+                                     const Vec3& to_ned_m) {
+  const ModemBand band = modem_band(sender, receiver);
+  if (band.share == 0.0) return std::nullopt;
+  return sender.source_level_db + db_from_power(band.share) -
+         modem_loss_db(water, band.frequency_hz, from_ned_m, to_ned_m);
+}
+
 double modem_noise_db(const ModemWater& water, const ModemSettings& receiver) {
   const double ambient_db = ambient_noise_db(receiver.frequency_hz, water.wind_m_s, water.shipping);
   const double levels[] = {ambient_db, receiver.self_noise_db};
@@ -196,20 +205,19 @@ ModemMessage without_words(ModemMessage message) {
 // The message's first sound reaches the modem.
 void begin_hearing(const ModemChannel& channel, std::size_t from, const ModemState::Flight& flight,
                    double begins_s, std::size_t to, const Vec3& to_ned_m, ModemState& state) {
-  const ModemSettings& sender = channel.modems[from];
   const bool for_it = flight.message.to == kToAll || flight.message.to == to;
   const auto lost = [&](std::uint64_t ModemCounts::*count, ModemEvent event) {
     if (for_it)
       report_event(state, count,
                    {event, without_words(flight.message), begins_s, flight.sent_s, begins_s, 0.0});
   };
-  const ModemBand band = modem_band(sender, channel.modems[to]);
   const bool in_water = flight.from_ned_m.z >= 0.0 && to_ned_m.z >= 0.0;
-  // What is not heard at all disturbs nothing either.
-  if (!in_water || band.share == 0.0) return lost(&ModemCounts::too_weak, ModemEvent::kTooWeak);
-  const double level_db =
-      sender.source_level_db + db_from_power(band.share) -
-      modem_loss_db(channel.water, band.frequency_hz, flight.from_ned_m, to_ned_m);
+  const std::optional<double> level_db =
+      in_water ? modem_level_db(channel.water, channel.modems[from], channel.modems[to],
+                                flight.from_ned_m, to_ned_m)
+               : std::nullopt;
+  // A sound that is not heard at all does not disturb others either.
+  if (!level_db) return lost(&ModemCounts::too_weak, ModemEvent::kTooWeak);
   const auto free = std::ranges::find(state.hearings, 0u, &ModemState::Hearing::arriving);
   // More at once than any receiver keeps apart.
   if (free == state.hearings.end()) return lost(&ModemCounts::collided, ModemEvent::kCollided);
@@ -218,7 +226,7 @@ void begin_hearing(const ModemChannel& channel, std::size_t from, const ModemSta
                           .sent_s = flight.sent_s,
                           .begins_s = begins_s,
                           .ends_s = ends_s,
-                          .power = power_from_db(level_db),
+                          .power = power_from_db(*level_db),
                           .arriving = 1,
                           .from_ned_m = flight.from_ned_m,
                           .to_ned_m = to_ned_m};

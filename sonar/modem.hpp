@@ -44,8 +44,8 @@ struct ModemSettings {
 };
 
 // ---- Links ------------------------------------------------------------------------------------
-// Of a message the sender decides level, band, bit rate, preamble and code; the receiver decides
-// its own band, its noise and what it detects. A path fades alike both ways.
+// The sender decides a message's level, band, bit rate, preamble and code; the receiver decides its
+// own band, its noise and what it detects. A path fades alike both ways.
 
 // One way. NaN gives NaN; nothing to travel takes no time.
 double modem_travel_s(const ModemWater& water, const Vec3& from_ned_m, const Vec3& to_ned_m);
@@ -61,6 +61,11 @@ struct ModemBand {
   double frequency_hz = 0.0;  // the middle of what they have in common
 };
 ModemBand modem_band(const ModemSettings& sender, const ModemSettings& receiver);
+// The level in the receiver's band, dB re 1 uPa, of what the sender sends from another place; none:
+// their bands have nothing in common. NED places, metres, in water.
+std::optional<double> modem_level_db(const ModemWater& water, const ModemSettings& sender,
+                                     const ModemSettings& receiver, const Vec3& from_ned_m,
+                                     const Vec3& to_ned_m);
 // In a receiver's band, dB re 1 uPa^2: ambient and its own.
 double modem_noise_db(const ModemWater& water, const ModemSettings& receiver);
 double modem_duration_s(const ModemSettings& sender, std::size_t bytes);

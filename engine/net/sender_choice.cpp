@@ -7,7 +7,7 @@ namespace neritic::net {
 bool SenderChoice::admits(std::uint64_t sender, TimeNs arrived_ns) {
   newest_ns_ = std::max(newest_ns_, arrived_ns);
   if (!used_ || sender == *used_ || arrived_ns - used_ns_ >= silence_ns_) return true;
-  if (others_ == 0 || arrived_ns - other_ns_ >= silence_ns_) others_ = 0;
+  if (arrived_ns - other_ns_ >= silence_ns_) others_ = 0;
   others_ = std::min(others_ + 1, kTold);
   other_ = sender;
   other_ns_ = arrived_ns;

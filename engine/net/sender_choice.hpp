@@ -1,6 +1,6 @@
-// Which of several senders at one port is used: the first one whose packets are good, until it was
-// silent for a second (or so long as its kind may be). What the others send is not used. A sender
-// is known by a number that its packets bear, or by its address. Plain value; one thread.
+// Chooses one of several senders at a port: the first whose packets are good is used until it has
+// been silent for a second, or for as long as its kind may be. Packets of the others are not used.
+// A sender is known by a number in its packets, or by its address. Plain value; one thread.
 #pragma once
 
 #include <cstdint>

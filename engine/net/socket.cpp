@@ -93,7 +93,7 @@ void keep_alive(const Descriptor& socket) {
   set(socket, IPPROTO_TCP, TCP_KEEPCNT, kProbes);
 }
 
-// Whether the stream of which recv() gave that is over.
+// Whether a stream is over, by what recv() gave.
 bool ended(ssize_t got) {
   return got == 0 || (got < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR);
 }
@@ -240,7 +240,7 @@ void TcpReceiver::drop_waiting() {
   if (ended(got)) waiting_ = Descriptor();
 }
 
-// Whether there is a stream now that there was not.
+// Whether the sender that waited is used from now on.
 bool TcpReceiver::take_waiting() {
   if (stream_.open() || !waiting_.open()) return false;
   stream_ = std::exchange(waiting_, Descriptor());

@@ -162,9 +162,9 @@ inline constexpr auto kInputChoiceKeys = std::to_array<Key>({"from", "hold_s", "
 inline constexpr auto kModemKeys = std::to_array<Key>(
     {"position_m", "source_level_db", "frequency_hz", "bandwidth_hz", "bit_rate_hz", "preamble_s",
      "coding_gain_db", "detection_db", "self_noise_db", "fading", "turnaround_s", "usbl"});
-inline constexpr auto kModemUsblKeys = std::to_array<Key>(
-    {"target", "interval_s", "offset_s", "wait_s", "range_noise_m", "direction_noise_deg",
-     "sound_m_s"});
+inline constexpr auto kModemUsblKeys =
+    std::to_array<Key>({"target", "interval_s", "offset_s", "wait_s", "range_noise_m",
+                        "direction_noise_deg", "sound_m_s"});
 inline constexpr auto kAcousticsKeys =
     std::to_array<Key>({"temperature_c", "salinity_psu", "ph", "profile", "path", "spreading",
                         "wind_m_s", "shipping"});

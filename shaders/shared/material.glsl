@@ -54,11 +54,11 @@ vec2 mapped(TextureMapping map, vec4 uv) {
   return vec2(dot(map.u, p), dot(map.v, p));
 }
 
-// Of a detail texture's level: a trilinear level is blurred at grazing sights, where grain is looked for.
+// Added to a detail texture's mip level: without it grain is blurred at grazing sights, where it is seen best.
 const float kDetailBias = -0.5;
 
-// What a close view needs beyond the other textures: xy is added to the tangent-space normal, z is the
-// relative change of the base colour; all 0 on average.
+// The detail texture adds what close views show: xy is added to the tangent-space normal, z is the relative change of
+// the base colour. All are 0 on average.
 vec3 material_detail(vec4 uv) {
   if (!material_has(kMaterialDetailTexture)) return vec3(0.0);
   return texture(detail_texture, mapped(material.detail_map, uv), kDetailBias).xyz * 2.0 - 1.0;

@@ -322,24 +322,26 @@ SeaPoint rippled(SeaPoint point, vec2 at, float footprint_m) {
   return point;
 }
 
-// Radiance just above the surface, up along a sight that goes down; below: what comes up in the water; mirrored: of
-// what stands in the mirror's way, its share in w.
-vec3 sea_mirror(SeaPoint point, vec3 direction) {
-  vec3 normal = normalize(vec3(-point.slope.x, 1.0, -point.slope.y));
-  vec3 mirror = direction + 2.0 * max(dot(-direction, normal), 0.0) * normal;
+vec3 sea_normal(SeaPoint point) { return normalize(vec3(-point.slope.x, 1.0, -point.slope.y)); }
+
+// The direction, never down, into which a sight that meets the normal at this cosine is mirrored.
+vec3 sea_mirror(vec3 direction, vec3 normal, float cosine) {
+  vec3 mirror = direction + 2.0 * cosine * normal;
   return normalize(vec3(mirror.x, max(mirror.y, 0.02), mirror.z));
 }
+
+// Radiance just above the surface, up along a sight that goes down. below: the radiance that comes up in the water.
+// mirrored: the radiance of what the surface mirrors instead of the sky, and its share in w.
 vec3 sea_from_above(SeaPoint point, vec3 eye, vec3 direction, vec3 below, vec4 mirrored, float pixel_rad) {
-  vec3 normal = normalize(vec3(-point.slope.x, 1.0, -point.slope.y));
+  vec3 normal = sea_normal(point);
   float facing = dot(-direction, normal);
   // Unresolved slopes show their nearer sides: the least cosine is about their deviation. A flat surface has none.
   float nearer = max(facing, 0.6 * sqrt(0.5 * point.rough2) + 0.01);
   float in_air = light_has(kLightWaves) ? nearer : max(facing, 1e-3);
   float in_water = sqrt(1.0 - (1.0 - in_air * in_air) / (kWaterIndex * kWaterIndex));
   float reflected = fresnel_of(in_water, in_air);
-  vec3 mirror = direction + 2.0 * in_air * normal;
-  mirror = normalize(vec3(mirror.x, max(mirror.y, 0.02), mirror.z));
-  vec3 radiance = reflected * mix(sky_over(mirror), mirrored.rgb, mirrored.a) + (1.0 - reflected) * below / (kWaterIndex * kWaterIndex);
+  vec3 above = mix(sky_over(sea_mirror(direction, normal, in_air)), mirrored.rgb, mirrored.a);
+  vec3 radiance = reflected * above + (1.0 - reflected) * below / (kWaterIndex * kWaterIndex);
   if (light_has(kLightSunSeen)) {
     vec3 sun = sun_in_air();
     radiance += beam_in_air(sun) * glitter(-direction, sun, point, nearer, pixel_rad);

@@ -34,7 +34,7 @@ class DeviceAdapter {
   const net::LinkCounts& counts() const { return counts_; }
   // How old the newest sample may be when it is sent: the inbox refuses older ones.
   virtual TimeNs max_age_ns() const { return SampleInbox::kMaxAge_ns; }
-  // Whether its sender is there still: after so long without a packet another one may be used.
+  // After so long without a packet of the sender that is used another sender may be used.
   virtual TimeNs silence_ns() const { return kSecond_ns; }
   // Why nothing of what comes is used, in words; empty: it is used.
   virtual std::string trouble() const { return {}; }

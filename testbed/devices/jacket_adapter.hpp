@@ -1,7 +1,7 @@
 // The buttons of a buoyancy jacket. UBCD packets say how long each button was pressed in all: the
 // next packet makes up for presses whose packets were lost, so that loss changes no amount of gas.
 // A counter that rises by more than the time that went by is malformed.
-// Of several jackets (UBCD's byte 5) the first is used until it is silent for a second.
+// If several jackets send (UBCD's byte 5), the first is used until it is silent for a second.
 // The other two forms say only which buttons are pressed now. The thread of the device.
 #pragma once
 

@@ -28,8 +28,8 @@ class SoundRate {
   const std::string& trouble() const { return trouble_; }
 
   static constexpr TimeNs kWindow_ns = 3'000'000'000;
-  // Common rates are at least 8 % apart. A link that is late by 0.18 s at one end of a window is 6
-  // %.
+  // Common rates are at least 8 % apart. A link that is 0.18 s late at one end of a window changes
+  // the rate by 6 %.
   static constexpr double kMostRateOff = 0.06;
   // Two channels are 2, 24 bits 1.5, 8 bits 0.5 of the samples that the timestamps tell.
   static constexpr double kMostCountOff = 0.2;
@@ -41,8 +41,7 @@ class SoundRate {
 
   double rate_hz_;
   bool any_ = false, agreed_ = false;
-  std::int64_t begun_ = 0,
-               last_ = 0;  // timestamps of the window's first packet and of the last one
+  std::int64_t begun_ = 0, last_ = 0;  // timestamps: of the window's first packet, of the last
   std::size_t last_samples_ = 0;
   TimeNs begun_ns_ = 0;
   double steps_ = 0.0, samples_ = 0.0;  // of packets in the window that another one follows

@@ -18,15 +18,6 @@ struct RangingPair {
   const PhysicsModem& of() const { return modems.all()[target]; }
 };
 
-// What arrives of a message against the receiver's noise, no other sound beside it.
-double snr_db(const sonar::ModemWater& water, const sonar::ModemSettings& sender,
-              const sonar::ModemSettings& receiver, const Vec3& from_ned_m, const Vec3& to_ned_m) {
-  const sonar::ModemBand band = sonar::modem_band(sender, receiver);
-  return sender.source_level_db + 10.0 * std::log10(band.share) -
-         sonar::modem_loss_db(water, band.frequency_hz, from_ned_m, to_ned_m) -
-         sonar::modem_noise_db(water, receiver);
-}
-
 bool add_in_air(const RangingPair& pair, std::vector<std::string>& lines) {
   for (const auto& [modem, at] :
        {std::pair(&pair.by(), pair.asker_ned_m), {&pair.of(), pair.target_ned_m}})
@@ -44,7 +35,11 @@ bool add_weak(const RangingPair& pair, std::vector<std::string>& lines) {
   const auto settings = pair.modems.settings();
   const auto weak = [&](std::size_t from, std::size_t to, const Vec3& from_m, const Vec3& to_m,
                         const char* what) {
-    const double db = snr_db(pair.modems.water(), settings[from], settings[to], from_m, to_m);
+    // Bands without overlap were refused.
+    const double db =
+        sonar::modem_level_db(pair.modems.water(), settings[from], settings[to], from_m, to_m)
+            .value() -
+        sonar::modem_noise_db(pair.modems.water(), settings[to]);
     if (db >= settings[to].detection_db) return false;
     lines.push_back(
         fmt::format("{}: usbl: at the start, {:.3g} m apart, its {} {} {} with {:.3g} dB of signal "

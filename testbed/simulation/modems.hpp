@@ -35,8 +35,9 @@ class Modems {
   ModemSort sort_of(OwnerSort sort, std::uint32_t owner) const;
   const sonar::ModemWater& water() const { return water_; }
   std::span<const sonar::ModemSettings> settings() const { return settings_; }
-  // Of one that ranges: how long its request and its target's answer last, and how long it waits.
-  // It has an answer when twice the travel, the target's turnaround and the answer are over.
+  // The durations of a ranging modem's request and of its target's answer, and how long it waits
+  // for that. An answer is complete after twice the travel, the target's turnaround and its
+  // duration.
   double request_s(std::size_t modem) const;
   double answer_s(std::size_t modem) const;
   double wait_s(std::size_t modem) const;

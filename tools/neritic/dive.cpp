@@ -423,8 +423,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::stri
   tell(flags, *screen.device, camera, *view, loop, physics.get(),
        files ? &files->recorder() : nullptr, devices.get());
   if (served)
-    if (const std::string missed = served->missed_words(); !missed.empty())
-      log_warn("{}", missed);
+    if (const std::string missed = served->missed_words(); !missed.empty()) log_warn("{}", missed);
   NERITIC_TRY_STATUS(status);
   if (!flags.timeline.empty())
     NERITIC_TRY_STATUS(write_timeline(

@@ -127,7 +127,7 @@ std::string modem_line(const std::string& name, const sonar::ModemCounts& counts
   return line + "\n";
 }
 
-// Of a modem that ranges: how often it found its target, and that others were asked too much.
+// How often a modem that ranges found its target; how many requests a modem did not answer.
 std::string ranging_line(const Modems& modems, std::size_t i, const ModemTasks& tasks) {
   const PhysicsModem& modem = modems.all()[i];
   std::string out;

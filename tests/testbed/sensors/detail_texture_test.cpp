@@ -2,9 +2,8 @@
 // normal map, and it repeats on its own.
 #include <gtest/gtest.h>
 
-#include "engine/scene/shapes.hpp"
-#include "testbed/sensors/session.hpp"
 #include "tests/support/gpu_fixture.hpp"
+#include "tests/testbed/sensors/wall_scene.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -23,35 +22,19 @@ ImageU8 one_pixel(int red, int green, int blue) {
 // are; the sun stands to the right of the camera.
 Result<ImageU8> picture_of(gpu::Device& device, const scene::Material& material,
                            std::vector<ImageU8> pictures) {
-  scene::Model model = scene::make_box({4.0, 4.0, 1.0});  // texture coordinates in metres
+  scene::Model wall = test::wall_of(material);
   for (ImageU8& picture : pictures) {
-    model.textures.push_back({static_cast<int>(model.images.size()), {}});
-    model.textures.back().sampler.mag_linear = false;
-    model.images.push_back(std::move(picture));
+    wall.textures.push_back({static_cast<int>(wall.images.size()), {}});
+    wall.textures.back().sampler.mag_linear = false;
+    wall.images.push_back(std::move(picture));
   }
-  model.materials = {material};
-  for (scene::Primitive& primitive : model.meshes[0].primitives) {
-    primitive.material = 0;
+  for (scene::Primitive& primitive : wall.meshes[0].primitives)
     primitive.tangents.assign(primitive.positions.size(), Vec4f(1, 0, 0, 1));
-  }
-  scene::Scene scene;
-  scene.path = "test";
+  scene::Scene scene = test::wall_scene(std::move(wall), 32);
   scene.sun = scene::Sun{.elevation_rad = radians(20.0), .azimuth_rad = radians(135.0)};
-  scene.models.push_back(std::make_shared<scene::Model>(std::move(model)));
-  scene::Object object;
-  object.model = 0;
-  object.mount.pose.position_m = {0.0, 0.0, -1.5};
-  scene.objects.push_back(object);
-  scene::Camera camera;
-  camera.width = camera.height = 32;
-  camera.vertical_fov_rad = 2.0 * std::atan(0.5);  // 1 m of the wall
-  camera.exposure.fixed_ev = 14.0;
-  scene.cameras.push_back(camera);
-  NERITIC_TRY(const auto session, Session::create(device, std::move(scene)));
-  FrameRequest request;
-  request.cameras = {0};
-  NERITIC_TRY(const FrameResult result, session->render(request));
-  return result.cameras[0].eyes[0].color;
+  scene.cameras[0].vertical_fov_rad = 2.0 * std::atan(0.5);  // 1 m of the wall
+  scene.cameras[0].exposure.fixed_ev = 14.0;
+  return test::picture_of(device, std::move(scene));
 }
 
 TEST_F(DetailTexture, BlueChangesTheBaseColourByItsValue) {

@@ -4,9 +4,8 @@
 
 #include <set>
 
-#include "engine/scene/shapes.hpp"
-#include "testbed/sensors/session.hpp"
 #include "tests/support/gpu_fixture.hpp"
+#include "tests/testbed/sensors/wall_scene.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -29,9 +28,6 @@ Result<std::set<int>> levels_of(gpu::Device& device, const scene::Sampler& sampl
                                 double texels_per_pixel,
                                 ImageU8 texture = checkerboard(kTexels, kTexels)) {
   constexpr std::uint32_t kPixels = 40;
-  scene::Model model = scene::make_box({4.0, 4.0, 1.0});  // texture coordinates in metres
-  model.images.push_back(std::move(texture));
-  model.textures.push_back({0, sampler});
   scene::Material material;
   material.unlit = true;
   material.base_color_texture.texture = 0;
@@ -39,26 +35,13 @@ Result<std::set<int>> levels_of(gpu::Device& device, const scene::Sampler& sampl
   const auto repeats = static_cast<float>(texels_per_pixel / (pixel_m * kTexels));
   material.base_color_texture.transform_u = {repeats, 0, 0};
   material.base_color_texture.transform_v = {0, repeats, 0};
-  model.materials = {material};
-  for (scene::Primitive& primitive : model.meshes[0].primitives) primitive.material = 0;
-
-  scene::Scene scene;
-  scene.path = "test";
-  scene.models.push_back(std::make_shared<scene::Model>(std::move(model)));
-  scene::Object object;
-  object.model = 0;
-  object.mount.pose.position_m = {0.0, 0.0, -1.5};
-  scene.objects.push_back(object);
-  scene::Camera camera;
-  camera.width = camera.height = kPixels;
-  camera.vertical_fov_rad = radians(30.0);
-  scene.cameras.push_back(camera);
-  NERITIC_TRY(const auto session, Session::create(device, std::move(scene)));
-  FrameRequest request;
-  request.cameras = {0};
-  NERITIC_TRY(const FrameResult result, session->render(request));
+  scene::Model wall = test::wall_of(material);
+  wall.images.push_back(std::move(texture));
+  wall.textures.push_back({0, sampler});
+  scene::Scene scene = test::wall_scene(std::move(wall), kPixels);
+  scene.cameras[0].vertical_fov_rad = radians(30.0);
+  NERITIC_TRY(const ImageU8 color, test::picture_of(device, std::move(scene)));
   std::set<int> levels;
-  const ImageU8& color = result.cameras[0].eyes[0].color;
   for (std::uint32_t y = 0; y < kPixels; ++y)
     for (std::uint32_t x = 0; x < kPixels; ++x) levels.insert(color.at(x, y, 1));
   return levels;

@@ -1,9 +1,8 @@
 // Vertex colours are linear, as glTF says, and as fine in the dark as the picture is.
 #include <gtest/gtest.h>
 
-#include "engine/scene/shapes.hpp"
-#include "testbed/sensors/session.hpp"
 #include "tests/support/gpu_fixture.hpp"
+#include "tests/testbed/sensors/wall_scene.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -13,31 +12,17 @@ using VertexColor = test::GpuTest;
 // The grey level in the middle of a wall that shines with the linear value: by its vertices'
 // colours or by its material's.
 Result<int> level_of(gpu::Device& device, float linear, bool by_vertices) {
-  scene::Model model = scene::make_box({4.0, 4.0, 1.0});
   const Vec4f color(linear, linear, linear, 1.0f);
   scene::Material material;
   material.unlit = true;
   if (!by_vertices) material.base_color = color;
-  model.materials = {material};
-  for (scene::Primitive& primitive : model.meshes[0].primitives) {
-    primitive.material = 0;
-    if (by_vertices) primitive.colors.assign(primitive.positions.size(), color);
-  }
-  scene::Scene scene;
-  scene.path = "test";
-  scene.models.push_back(std::make_shared<scene::Model>(std::move(model)));
-  scene::Object object;
-  object.model = 0;
-  object.mount.pose.position_m = {0.0, 0.0, -1.5};
-  scene.objects.push_back(object);
-  scene::Camera camera;
-  camera.width = camera.height = 16;
-  scene.cameras.push_back(camera);
-  NERITIC_TRY(const auto session, Session::create(device, std::move(scene)));
-  FrameRequest request;
-  request.cameras = {0};
-  NERITIC_TRY(const FrameResult result, session->render(request));
-  return int{result.cameras[0].eyes[0].color.at(8, 8, 1)};
+  scene::Model wall = test::wall_of(material);
+  if (by_vertices)
+    for (scene::Primitive& primitive : wall.meshes[0].primitives)
+      primitive.colors.assign(primitive.positions.size(), color);
+  NERITIC_TRY(const ImageU8 picture,
+              test::picture_of(device, test::wall_scene(std::move(wall), 16)));
+  return int{picture.at(8, 8, 1)};
 }
 
 TEST_F(VertexColor, DarkOnesShowAsTheMaterialsColourOfThatValue) {
