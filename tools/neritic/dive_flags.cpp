@@ -6,6 +6,7 @@
 #include "testbed/simulation/physics_world.hpp"
 #include "tools/neritic/dive_runs.hpp"
 #include "tools/neritic/dive_told.hpp"
+#include "tools/neritic/hud_flags.hpp"
 #include "tools/neritic/step_files.hpp"
 
 namespace neritic::tools {
@@ -121,6 +122,8 @@ Status check_dive_flags(const DiveFlags& flags) {
   }
   if (flags.panels && !flags.headless)
     return refusal("--panels", "a run in a window", "with --headless (a window has them; F2)");
+  if (!flags.hud.empty() && flags.hud != "none")
+    if (const auto layouts = hud_layouts(flags.hud); !layouts.ok()) return layouts.error();
   NERITIC_TRY_STATUS(check_flags_of_displays(flags));
   return check_replay_flags(flags);
 }
