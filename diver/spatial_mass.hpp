@@ -32,10 +32,17 @@ inline SpatialMass rotated(const SpatialMass& m, const Mat3& rotation) {
   const Mat3 back = glm::transpose(rotation);
   return {rotation * m.a * back, rotation * m.b * back, rotation * m.c * back};
 }
+// m S(p) and S(p) m, S(p) being cross_matrix(p), without the products by its zeros.
+inline Mat3 times_cross(const Mat3& m, const Vec3& p) {
+  return {p.z * m[1] - p.y * m[2], p.x * m[2] - p.z * m[0], p.y * m[0] - p.x * m[1]};
+}
+inline Mat3 cross_times(const Vec3& p, const Mat3& m) {
+  return {glm::cross(p, m[0]), glm::cross(p, m[1]), glm::cross(p, m[2])};
+}
 // About the point from which the mass's own origin lies at p.
 inline SpatialMass shifted(const SpatialMass& m, const Vec3& p) {
-  const Mat3 s = cross_matrix(p), as = m.a * s;
-  return {m.a, m.b - as, m.c - glm::transpose(m.b) * s + s * m.b - s * as};
+  const Mat3 as = times_cross(m.a, p);
+  return {m.a, m.b - as, m.c - times_cross(glm::transpose(m.b), p) + cross_times(p, m.b - as)};
 }
 
 }  // namespace neritic::diver

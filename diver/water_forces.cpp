@@ -44,18 +44,24 @@ DepthLine depth_of(const PartMotion& m, const Immersion& immersion) {
           glm::dot(immersion.down, m.body_from_part[0])};
 }
 
-// Forces on one part in its axes about its start, and their derivative (as SpatialMass: symmetric).
+// Drag of a part's strips in a direction across: the sums of c, c s and c s^2, where c is a strip's
+// force by its speed and s its way from the part's start.
+struct DragAcross {
+  double c = 0.0, c_s = 0.0, c_ss = 0.0;
+};
+// Forces on one part in its axes about its start, and what their derivative consists of.
 struct PartForces {
   Vec3 force{0.0}, moment{0.0};
-  SpatialMass drag;
+  double drag_along = 0.0;
+  DragAcross drag_first, drag_second;
   double power_w = 0.0;
 };
 
 PartForces strips_of(const Part& part, const PartMotion& m, const DepthLine& depth) {
   const double step_m = part.length_m / part.strips;
   const bool under = depth.under(part.length_m, part.radius_m);
-  double first = 0.0, first_s = 0.0, first_ss = 0.0;
-  double second = 0.0, second_s = 0.0, second_ss = 0.0, wet_sum = 0.0;
+  double wet_sum = 0.0;
+  DragAcross first, second;
   PartForces out;
   for (int i = 0; i < part.strips; ++i) {
     const double s = (i + 0.5) * step_m;
@@ -69,17 +75,47 @@ PartForces strips_of(const Part& part, const PartMotion& m, const DepthLine& dep
     out.moment.y += s * c2 * v2;
     out.moment.z -= s * c1 * v1;
     out.power_w -= c1 * v1 * v1 + c2 * v2 * v2;
-    first += c1, first_s += c1 * s, first_ss += c1 * s * s;
-    second += c2, second_s += c2 * s, second_ss += c2 * s * s;
+    first.c += c1, first.c_s += c1 * s, first.c_ss += c1 * s * s;
+    second.c += c2, second.c_s += c2 * s, second.c_ss += c2 * s * s;
     wet_sum += wet;
   }
   const double along = wet_sum * step_m * part.drag_along * std::abs(m.velocity.x);
   out.force.x = -along * m.velocity.x;
   out.power_w -= along * m.velocity.x * m.velocity.x;
-  out.drag.a[0][0] = along, out.drag.a[1][1] = first, out.drag.a[2][2] = second;
-  out.drag.b[2][1] = first_s, out.drag.b[1][2] = -second_s;
-  out.drag.c[1][1] = second_ss, out.drag.c[2][2] = first_ss;
+  out.drag_along = along, out.drag_first = first, out.drag_second = second;
   return out;
+}
+
+// m += a b^T, its upper triangle only.
+void add_upper(Mat3& m, const Vec3& a, const Vec3& b) {
+  m[0][0] += a.x * b.x, m[1][0] += a.x * b.y, m[2][0] += a.x * b.z;
+  m[1][1] += a.y * b.y, m[2][1] += a.y * b.z, m[2][2] += a.z * b.z;
+}
+void add_outer(Mat3& m, const Vec3& a, const Vec3& b) {
+  m[0] += b.x * a, m[1] += b.y * a, m[2] += b.z * a;
+}
+void mirror_upper(Mat3& m) {
+  m[0][1] = m[1][0], m[0][2] = m[2][0], m[1][2] = m[2][1];
+}
+
+// The derivative of a part's forces about the body's origin, of a and c the upper triangles. A
+// strip at s that is pulled along the unit axis n has the wrench (n, q + s t): q is n's moment
+// about the origin where it acts at the part's start, and t what a metre farther adds.
+void add_drag(const PartForces& f, const PartMotion& m, SpatialMass& drag) {
+  const auto add_across = [&](const DragAcross& d, const Vec3& n, const Vec3& t) {
+    const Vec3 q = glm::cross(m.start_m, n), moment = d.c * q + d.c_s * t;
+    add_upper(drag.a, d.c * n, n);
+    add_outer(drag.b, n, moment);
+    add_upper(drag.c, q, moment);
+    add_upper(drag.c, t, d.c_s * q + d.c_ss * t);
+  };
+  const Mat3& axes = m.body_from_part;
+  const Vec3 q = glm::cross(m.start_m, axes[0]), moment = f.drag_along * q;
+  add_upper(drag.a, f.drag_along * axes[0], axes[0]);
+  add_outer(drag.b, axes[0], moment);
+  add_upper(drag.c, q, moment);
+  add_across(f.drag_first, axes[1], axes[2]);
+  add_across(f.drag_second, axes[2], -axes[1]);
 }
 
 // m += factor a b^T.
@@ -163,8 +199,10 @@ WaterForces water_forces(const Body& body, const Posture& posture, const Vec6& v
     force += part_force;
     moment += m.body_from_part * f.moment + glm::cross(m.start_m, part_force);
     out.power_w += f.power_w;
-    drag += shifted(rotated(f.drag, m.body_from_part), m.start_m);
+    add_drag(f, m, drag);
   }
+  mirror_upper(drag.a);
+  mirror_upper(drag.c);
   out.wrench = vec6(force, moment);
   out.drag = matrix_of(drag);
   for (const Edge& edge : body.edges) {

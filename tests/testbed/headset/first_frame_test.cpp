@@ -31,14 +31,14 @@ class HeadsetFirstFrame : public HeadsetRun {
   }
 };
 
-// A frame that makes pipelines is a gap of seconds, 12 for the first one of this scene.
+// A frame that makes pipelines is a gap of seconds.
 TEST_F(HeadsetFirstFrame, NoGapBetweenFramesIsLongOnceTheSessionRuns) {
   const ColdShaders cold;
   fakes::FakeHeadset fake("size 64 60\nreal_time yes\nperiod 0.05\n");
   without_validation();  // compiles each shader once more
   govern();
   const scene::Scene scene =
-      scene::load_scene(test::source_dir() / "assets/scenes/dive.toml").value();
+      scene::load_scene(test::source_dir() / "assets/scenes/boat.toml").value();
   NERITIC_ASSERT_OK(const auto physics, LivePhysics::create(scene, LivePhysics::Pace::kPicture));
   with(*physics);
   with(DiveHudOptions{.layouts = {hud::LayoutKind::kWrist}});
