@@ -4,21 +4,23 @@
 #include <cmath>
 
 #include "engine/core/check.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::sonar {
 
 Status validate(std::span<const SonarRow> rows, const std::string& name,
                 const TableLimits& limits) {
-  if (rows.empty()) return bad_input("{}: no row; accepted: at least one", name);
+  if (rows.empty()) return refusal(name, "no row", "at least one");
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const SonarRow& row = rows[i];
     if (!(row.x >= limits.x_min && row.x <= limits.x_max && row.y >= limits.y_min &&
           row.y <= limits.y_max))
-      return bad_input("{}: row {} is {}, {}; accepted: [{:g}, {:g}] and [{:g}, {:g}]", name, i + 1,
-                       row.x, row.y, limits.x_min, limits.x_max, limits.y_min, limits.y_max);
+      return refusal(fmt::format("{}: row {}", name, i + 1), fmt::format("{}, {}", row.x, row.y),
+                     fmt::format("[{:g}, {:g}] and [{:g}, {:g}]", limits.x_min, limits.x_max,
+                                 limits.y_min, limits.y_max));
     if (i > 0 && !(row.x > rows[i - 1].x))
-      return bad_input("{}: row {} is {} after {}; accepted: rising values", name, i + 1, row.x,
-                       rows[i - 1].x);
+      return refusal(fmt::format("{}: row {}", name, i + 1),
+                     fmt::format("{} after {}", row.x, rows[i - 1].x), "rising values");
   }
   return {};
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/check.hpp"
+#include "engine/core/refusal.hpp"
 
 namespace neritic::xr {
 namespace {
@@ -60,8 +61,8 @@ Result<std::size_t> control_id(const std::string& text) {
   std::string names;
   for (const Control& control : all)
     if (control.device == wanted) names += " " + control.name;
-  if (names.empty()) return bad_input("control '{}': accepted devices are {}", text, known);
-  return bad_input("control '{}': {} has{}", text, wanted, names);
+  if (names.empty()) return refusal("", fmt::format("control '{}'", text), "one of " + known);
+  return refusal("", fmt::format("control '{}'", text), wanted + " with one of" + names);
 }
 
 Result<ActionTable::Binding> ActionTable::parse(const std::string& text) {
@@ -82,18 +83,19 @@ Result<ActionTable::Binding> ActionTable::parse(const std::string& text) {
 
 Status ActionTable::check(const ActionDesc& desc, const std::string& text, const Binding& binding) {
   const bool moves = is_motion(binding.control);
+  const std::string where = "action " + desc.name;
   if (desc.kind == ActionKind::kMotion && !moves)
-    return bad_input(
-        "action {}: '{}' is held and does not move: accepted are mouse x, mouse y and "
-        "mouse wheel",
-        desc.name, text);
+    return refusal(where, fmt::format("'{}', which is held and does not move", text),
+                   "mouse x, mouse y, mouse wheel");
   if (desc.kind != ActionKind::kMotion && moves)
-    return bad_input("action {}: '{}' moves and is never {}: accepted are keys, buttons{}",
-                     desc.name, text, desc.kind == ActionKind::kPress ? "pressed" : "held",
-                     desc.kind == ActionKind::kPress ? "" : ", sticks and triggers");
+    return refusal(
+        where,
+        fmt::format("'{}', which moves and is never {}", text,
+                    desc.kind == ActionKind::kPress ? "pressed" : "held"),
+        desc.kind == ActionKind::kPress ? "keys, buttons" : "keys, buttons, sticks, triggers");
   if (desc.kind == ActionKind::kPress && binding.sign < 0.0)
-    return bad_input("action {}: '{}' is pressed and has no direction: accepted is '{}'", desc.name,
-                     text, text.substr(1));
+    return refusal(where, fmt::format("'{}', which is pressed and has no direction", text),
+                   fmt::format("'{}'", text.substr(1)));
   return {};
 }
 
@@ -117,14 +119,16 @@ Status ActionTable::check_alone(std::span<const ActionDesc> actions,
         if (binding.control != other.control || !both) continue;
         const Control& control = controls()[binding.control];
         if (use.action == i)
-          return bad_input("action {}: {} {} is named twice: accepted is one binding of a control",
-                           actions[i].name, control.device, control.name);
+          return refusal("action " + actions[i].name,
+                         fmt::format("{} {} twice", control.device, control.name),
+                         "one binding of a control");
         if (!(axes && is_analog(binding.control)))
-          return bad_input(
-              "action {}: {} {} is also that of {}: accepted is one action a control (give {} "
-              "another one, or none: {} = [])",
-              actions[i].name, control.device, control.name, actions[use.action].name,
-              actions[use.action].name, actions[use.action].name);
+          return refusal(
+              "action " + actions[i].name,
+              fmt::format("{} {}, which is also that of {}", control.device, control.name,
+                          actions[use.action].name),
+              fmt::format("one action a control (give {0} another one, or none: {0} = [])",
+                          actions[use.action].name));
       }
       uses.push_back({i, &binding});
     }

@@ -132,8 +132,8 @@ Status LogVisitor::channel(std::uint16_t id, const recording::McapChannel& chann
     return schema.data == recording::own_schema(type, lines).data;
   };
   const auto other_fields = [&] {
-    return bad_input("{}: {} with other fields than this version's", name_,
-                     printable(channel.topic));
+    return refusal(name_, fmt::format("other fields of {}", printable(channel.topic)),
+                   "those of this version");
   };
   if (channel.topic == kStepTopic) {
     if (!is_own(kStepType, kStepLines)) return other_fields();
@@ -150,7 +150,7 @@ Status LogVisitor::channel(std::uint16_t id, const recording::McapChannel& chann
   const auto stream = channel.metadata.find(kStreamKey), kind = channel.metadata.find(kKindKey);
   if (stream == channel.metadata.end() || kind == channel.metadata.end() ||
       !is_name(stream->second))
-    return bad_input("{}: channel {} has no name or kind", name_, id);
+    return refusal(name_, fmt::format("channel {} without a name or kind", id), "both");
   for (std::size_t i = 0; i < kPayloadKinds; ++i) {
     const auto at = static_cast<PayloadKind>(i);
     if (name_of(at) != kind->second || !enters(at)) continue;
@@ -189,7 +189,7 @@ Status LogVisitor::step(std::span<const std::byte> bytes) {
   in.number<double>();
   const auto hash = in.number<std::uint64_t>();
   if (!in.whole() || in.left() > 0)
-    return bad_input("{}: step {} is not whole", name_, log_.hashes.size());
+    return refusal(name_, fmt::format("a part of step {}", log_.hashes.size()), "whole steps");
   const std::uint64_t next = log_.first_step + log_.hashes.size();
   // A recording that was repaired lacks what was damaged.
   if (step > next) {
@@ -199,7 +199,7 @@ Status LogVisitor::step(std::span<const std::byte> bytes) {
     return {};
   }
   if (step < next)
-    return bad_input("{}: step {} found; accepted: {}, the next one", name_, step, next);
+    return refusal(name_, fmt::format("step {}", step), fmt::format("{}, the next one", next));
   if (doubt_) return *doubt_;
   log_.hashes.push_back(hash);
   return {};
@@ -230,24 +230,30 @@ Status LogVisitor::source(std::span<const std::byte> bytes) {
 Status LogVisitor::sample(StreamId stream, std::span<const std::byte> bytes) {
   const std::size_t index = log_.entries.size();
   const auto read = read_sample(log_.streams[stream].kind, bytes);
-  if (!read) return bad_input("{}: sample {} is not whole", name_, index);
+  if (!read) return refusal(name_, fmt::format("a part of sample {}", index), "whole samples");
   SampleLog::Entry entry{log_.steps(), read->sample};
   SampleHeader& header = entry.sample.header;
   header.stream = stream;
   if (log_.hashes.empty()) {
-    doubt_ = bad_input("{}: sample {} comes before the hash of the start", name_, index);
+    doubt_ = refusal(name_, fmt::format("sample {} before the hash of the start", index),
+                     "the hash first");
     return {};
   }
   if (header.source >= log_.sources.size()) {
-    doubt_ = bad_input("{}: sample {} is of no source of the file", name_, index);
+    doubt_ = refusal(name_, fmt::format("sample {} of source {}", index, header.source),
+                     fmt::format("one of the {} sources before it", log_.sources.size()));
     return {};
   }
   if (!plausible(header.captured_ns) || !plausible(header.arrived_ns))
-    return bad_input("{}: sample {} is of {} and {} ns; accepted: up to {} from 0", name_, index,
-                     header.captured_ns, header.arrived_ns, kMostTime_ns);
+    return refusal(
+        name_,
+        fmt::format("sample {} of {} and {} ns", index, header.captured_ns, header.arrived_ns),
+        fmt::format("up to {} from 0", kMostTime_ns));
   if (!all_finite(entry.sample.payload))
-    return bad_input("{}: sample {}, of {} at step {}, is not finite", name_, index,
-                     log_.streams[stream].name, entry.step);
+    return refusal(name_,
+                   fmt::format("a number that is not finite in sample {}, of {} at step {}", index,
+                               log_.streams[stream].name, entry.step),
+                   "finite numbers");
   log_.entries.push_back(entry);
   return {};
 }
@@ -257,7 +263,8 @@ Result<SampleLog> LogVisitor::log(const recording::McapReport& report) {
   if (gap_ && log_.hashes.empty())
     return failure(ErrorCode::kUnsupported, "{}: {}: it cannot be replayed", name_, log_.damage);
   if (doubt_ && !gap_) return *doubt_;
-  if (log_.hashes.empty()) return bad_input("{}: ends before the hash of its start", name_);
+  if (log_.hashes.empty())
+    return refusal(name_, "an end before the hash of the start", "one step at least");
   log_.whole = report.whole && !gap_;
   if (!gap_ && !report.damage.empty()) log_.damage = report.damage.front();
   // For a step that did not end.

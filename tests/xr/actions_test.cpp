@@ -74,10 +74,13 @@ TEST(Actions, AnUnknownControlIsRefusedByActionAndNameWithTheKnownOnes) {
     const auto made = ActionTable::create(actions);
     return made.ok() ? std::string() : made.error().message;
   };
-  EXPECT_NE(refusal("key Ctrl").find("action dance: control 'key Ctrl': key has A B"),
+  EXPECT_NE(refusal("key Ctrl")
+                .find("action dance: found control 'key Ctrl'; accepted: key with one of A B"),
             std::string::npos)
       << refusal("key Ctrl");
-  EXPECT_NE(refusal("foot left").find("accepted devices are key, mouse, pad"), std::string::npos)
+  EXPECT_NE(
+      refusal("foot left").find("found control 'foot left'; accepted: one of key, mouse, pad"),
+      std::string::npos)
       << refusal("foot left");
   EXPECT_NE(refusal("mouse x while mouse nose").find("mouse nose"), std::string::npos);
   EXPECT_EQ(refusal("key LeftShift while mouse left"), "");
@@ -89,14 +92,16 @@ TEST(Actions, ABindingThatCanNeverActIsRefused) {
     const auto made = ActionTable::create(actions);
     return made.ok() ? std::string() : made.error().message;
   };
-  EXPECT_EQ(refusal(ActionKind::kPress, "mouse x"),
-            "action dance: 'mouse x' moves and is never pressed: accepted are keys, buttons");
+  EXPECT_EQ(
+      refusal(ActionKind::kPress, "mouse x"),
+      "action dance: found 'mouse x', which moves and is never pressed; accepted: keys, buttons");
   EXPECT_NE(refusal(ActionKind::kAxis, "mouse wheel").find("moves and is never held"),
             std::string::npos);
   EXPECT_NE(refusal(ActionKind::kMotion, "key W").find("is held and does not move"),
             std::string::npos);
-  EXPECT_EQ(refusal(ActionKind::kPress, "-key I"),
-            "action dance: '-key I' is pressed and has no direction: accepted is 'key I'");
+  EXPECT_EQ(
+      refusal(ActionKind::kPress, "-key I"),
+      "action dance: found '-key I', which is pressed and has no direction; accepted: 'key I'");
   EXPECT_EQ(refusal(ActionKind::kPress, "key I"), "");
   EXPECT_EQ(refusal(ActionKind::kMotion, "-mouse wheel"), "");
   EXPECT_EQ(refusal(ActionKind::kAxis, "-pad left_x"), "");
@@ -109,12 +114,12 @@ TEST(Actions, AControlHasOneActionUnlessItIsASticks) {
   };
   const auto press = ActionKind::kPress, axis = ActionKind::kAxis;
   EXPECT_NE(refusal({{"ahead", axis, {"-key W"}, ""}, {"quit", press, {"key Q", "key W"}, ""}})
-                .find("action quit: key W is also that of ahead"),
+                .find("action quit: found key W, which is also that of ahead"),
             std::string::npos);
   EXPECT_NE(refusal({{"map", press, {"key M"}, ""}, {"quit", press, {"key M while key A"}, ""}})
-                .find("action quit: key M"),
+                .find("action quit: found key M"),
             std::string::npos);
-  EXPECT_NE(refusal({{"ahead", axis, {"-key W", "key W"}, ""}}).find("key W is named twice"),
+  EXPECT_NE(refusal({{"ahead", axis, {"-key W", "key W"}, ""}}).find("found key W twice"),
             std::string::npos);
   EXPECT_EQ(refusal({{"turn", axis, {"pad right_x"}, ""}, {"look", axis, {"pad right_x"}, ""}}),
             "");

@@ -150,7 +150,8 @@ TEST(SampleLog, ItEndsBeforeStepsThatAreMissing) {
   // The name alone is no damage, but a wrong recording.
   const auto nameless = without(2, 3);
   ASSERT_FALSE(nameless.ok());
-  EXPECT_NE(nameless.error().message.find("is of no source of the file"), std::string::npos);
+  EXPECT_NE(nameless.error().message.find(" of source 2; accepted: one of the 2 sources before it"),
+            std::string::npos);
 }
 
 // A run that was killed, wherever in the file (tests/recording tries every byte): the whole steps
@@ -234,7 +235,8 @@ INSTANTIATE_TEST_SUITE_P(
     All, BadSampleLog,
     testing::Values(BadLog{"bad.log: found a step of 0 s; accepted: over 0 to 1 s",
                            [](SampleLog& log) { log.step_s = 0.0; }},
-                    BadLog{"bad.log: sample 0, of diver/joints at step 0, is not finite",
+                    BadLog{"bad.log: found a number that is not finite in sample 0, of "
+                           "diver/joints at step 0; accepted: finite numbers",
                            [](SampleLog& log) {
                              std::get<BodyJoints>(log.entries[0].sample.payload).joints[2].y =
                                  std::numeric_limits<double>::quiet_NaN();
