@@ -26,7 +26,7 @@ except ImportError as missing:
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("NERITIC", str(ROOT / "build/release/tools/neritic"))
-SCENE = str(ROOT / "assets/scenes/dive.toml")
+SCENE = str(ROOT / "tests/scenes/over_sand.toml")
 PORT = 47000 + os.getpid() % 900
 
 

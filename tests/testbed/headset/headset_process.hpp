@@ -15,7 +15,9 @@ class HeadsetProcess : public ::testing::Test {
   void SetUp() override {
     if (test::may_skip_without_device()) GTEST_SKIP() << "no Vulkan device";
   }
-  static std::string scene() { return (test::source_dir() / "assets/scenes/ascent.toml").string(); }
+  static std::string scene() {
+    return (test::source_dir() / "tests/scenes/over_sand.toml").string();
+  }
   std::string path(const char* name) const { return (scratch_ / name).string(); }
   // The runtime's behaviour in runs from now on; it writes its complaints to "report".
   void script(const std::string& lines) const {

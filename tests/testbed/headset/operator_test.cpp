@@ -66,10 +66,11 @@ double mean_of(const ImageU8& image, double left, double top, double right, doub
 TEST_F(OperatorWindow, WatchesTheWearerAndWorksTheRun) {
   script(fmt::format(kHeadset, scratch_.path().string()));
   // Panels off, so that nothing lies over the picture.
-  ASSERT_EQ(watch("'file frame_0030_view_0.png' 'key F2' 'wait 1' 'seen a.ppm' 'key F2' 'wait 1' "
-                  "'seen b.ppm' 'key F5' 'file ascent.state' 'key Return' 'wait 1' 'key F12' 'file "
-                  "neritic_0001.png' 'key Escape'"),
-            0)
+  ASSERT_EQ(
+      watch("'file frame_0030_view_0.png' 'key F2' 'wait 1' 'seen a.ppm' 'key F2' 'wait 1' "
+            "'seen b.ppm' 'key F5' 'file over_sand.state' 'key Return' 'wait 1' 'key F12' 'file "
+            "neritic_0001.png' 'key Escape'"),
+      0)
       << said();
   EXPECT_EQ(text("report"), "") << "OpenXR's rules";
   EXPECT_THAT(said(), HasSubstr("frames in"));

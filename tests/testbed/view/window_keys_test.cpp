@@ -276,7 +276,7 @@ TEST_F(ShownInWindow, AServerThatSharesNoMemoryShowsTheSamePicture) {
 
 // Instruments that do not change keep their images from frame to frame, whoever reads them.
 TEST_F(WindowKeys, InstrumentsOverTheViewKeepVulkansRules) {
-  const std::string scene = (test::source_dir() / "assets/scenes/ascent.toml").string();
+  const std::string scene = (test::source_dir() / "tests/scenes/over_sand.toml").string();
   for (const char* const server : {"", "-extension MIT-SHM"}) {
     const test::WindowRun run = test::drive_window(
         scratch_.path(), "'" + scene + "' --size 320x200 --frames 12 --validate --hud corner",
@@ -290,8 +290,8 @@ TEST_F(WindowKeys, InstrumentsOverTheViewKeepVulkansRules) {
 TEST_F(WindowKeys, TheInsetGivesWayWithTheViewWhereFramesAreLate) {
   const std::string scene = (test::source_dir() / "assets/scenes/dive.toml").string();
   const test::WindowRun run = test::drive_window(
-      scratch_.path(), "'" + scene + "' --size 640x360 --seconds 14 --timeline t.png",
-      {"wait 5", "key n"});
+      scratch_.path(), "'" + scene + "' --size 640x360 --seconds 10 --timeline t.png",
+      {"wait 4", "key n"});
   if (test::may_skip_without_device()) GTEST_SKIP() << run.err;
   ASSERT_EQ(run.status, 0) << run.err;
   const auto data = nlohmann::json::parse(test::text_of(scratch_ / "t.plot.json"), nullptr, false);
