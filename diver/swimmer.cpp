@@ -62,22 +62,31 @@ bool can_fill(const Body& body, const HumanState& state) {
   return tank_pressure(body, state.life.tanks, 0) > kFillsJacket_pa;
 }
 
+bool is_awash(const HumanState& state) {
+  return state.root.position_ned_m.z < kAwash_m;
+}
+
 // The gas in jacket and suit expands on the way up and shrinks on the way down, most near the
 // surface. A diver who changes depth lets gas out, or in, at the same pace, so that the fins alone
 // make the rate. A button is held until the lift is right, at most for kVent_s.
-void hold_neutral(const Body& body, const HumanState& state, bool at_valve, SwimmerState& swimmer,
-                  HumanInputs& inputs) {
+void hold_neutral(const Body& body, const HumanState& state, bool at_valve, bool steered,
+                  SwimmerState& swimmer, HumanInputs& inputs) {
   swimmer.lift_sum = std::clamp(swimmer.lift_sum, -kChangeSum_l_s, kChangeSum_l_s);
   const bool rises = swimmer.rises > 0.0;
   // The change of lift that the way causes: an excess going up, a lack going down.
   const double brought_l = rises ? lifted_l(body, state) : -lifted_l(body, state);
   const bool goes_on = swimmer.button_s < 0.0;
-  const bool usual =
-      goes_on ? brought_l > kUsualTo_l : brought_l > kUsualAt_l && swimmer.button_s > kUsualWait_s;
-  const bool unusual =
-      goes_on ? brought_l < kUnusualTo_l : brought_l < kUnusualAt_l && swimmer.button_s > kWait_s;
-  const bool lets_out = (rises ? usual : unusual) && state.life.jacket_moles > kEmptyJacket_mol;
-  const bool lets_in = (rises ? unusual : usual) && can_fill(body, state);
+  const LiftBand band = steered ? kSteeredBand : LiftBand{};
+  const bool usual = goes_on ? brought_l > band.usual_to_l
+                             : brought_l > kUsualAt_l && swimmer.button_s > kUsualWait_s;
+  const bool unusual = goes_on ? brought_l < band.unusual_to_l
+                               : brought_l < band.unusual_at_l && swimmer.button_s > band.wait_s;
+  // Partly out of the water a body has less lift than it needs below: a person who steers fills no
+  // jacket there, and empties it to go down.
+  const bool awash = steered && is_awash(state);
+  const bool too_light = awash ? !rises : rises ? usual : unusual;
+  const bool lets_out = too_light && state.life.jacket_moles > kEmptyJacket_mol;
+  const bool lets_in = (rises ? unusual : usual) && !awash && can_fill(body, state);
   if (!lets_out && !lets_in)
     swimmer.button_s = std::max(swimmer.button_s, 0.0);
   else if (!goes_on)
@@ -86,20 +95,22 @@ void hold_neutral(const Body& body, const HumanState& state, bool at_valve, Swim
 }
 
 // Rises and sinks by breath first, by the jacket where breath does not do.
-void balance(const Body& body, double sink_too_much_m_s, const HumanState& state,
+void balance(const Body& body, double sink_too_much_m_s, bool steered, const HumanState& state,
              SwimmerState& swimmer, double dt_s, HumanInputs& inputs) {
   const bool at_valve = gas_at_dump(body, state.life.jacket_moles, thorax_place(body, state));
   // A diver who has to point the nose down to stay down is too light.
   const double rests = swimmer.rests;
   const double usual_l = 1.6 * sink_too_much_m_s + 0.1 * swimmer.climb_sum;
-  const double want_l = (1.0 + kHoverBreath * rests) * usual_l;
+  const double want_l =
+      steered ? kSteeredBreath_l_s * sink_too_much_m_s : (1.0 + kHoverBreath * rests) * usual_l;
   swimmer.lift_sum = std::clamp(swimmer.lift_sum + usual_l * dt_s, -12.0, 12.0);
   const double breath_m3 = std::clamp(1e-3 * (want_l + 0.08 * swimmer.lift_sum),
-                                      -kMostBreathBias_m3, kMostBreathBias_m3);
-  follow(swimmer.breath_bias_m3, breath_m3, kBreathLag_s, dt_s);
+                                      steered ? -kSteeredOut_m3 : -kMostBreathBias_m3,
+                                      steered ? kSteeredIn_m3 : kMostBreathBias_m3);
+  follow(swimmer.breath_bias_m3, breath_m3, steered ? kSteeredLag_s : kBreathLag_s, dt_s);
   inputs.breath_bias_m3 = swimmer.breath_bias_m3;
   swimmer.button_s += dt_s;
-  if (swimmer.rises != 0.0) return hold_neutral(body, state, at_valve, swimmer, inputs);
+  if (swimmer.rises != 0.0) return hold_neutral(body, state, at_valve, steered, swimmer, inputs);
   const double lifted = lifted_l(body, state);
   if (swimmer.button_s > kWait_s && std::abs(lifted) > kBreathHolds_l)
     swimmer.lift_sum =
@@ -227,7 +238,13 @@ bool stands_off(const SwimGoal& goal, const HumanState& state, const SwimmerStat
 
 // Metres a second down to that depth. A place well above or below is approached at a rate that
 // grows slowly.
-double wanted_sink(double deeper_m, bool swims, SwimmerState& swimmer, double dt_s) {
+double wanted_sink(double deeper_m, const std::optional<double>& climb_m_s, bool swims,
+                   SwimmerState& swimmer, double dt_s) {
+  if (climb_m_s) {
+    swimmer.rises = *climb_m_s == 0.0 ? 0.0 : std::copysign(1.0, *climb_m_s);
+    if (swimmer.rises == 0.0) swimmer.button_s = std::max(swimmer.button_s, 0.0);
+    return -*climb_m_s;
+  }
   const double to_go_m = std::copysign(1.0, -swimmer.rises) * deeper_m;
   if (swimmer.rises != 0.0 && to_go_m < kHardlyOff_m) {
     swimmer.rises = 0.0;
@@ -405,14 +422,15 @@ void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& ask
                        swimmer.goes_back != kRightsHimself;
   const bool slowly = against && drift.m_s < kSlowCurrent_m_s;
   const bool swims = against || goal.speed_m_s > settings.gliding_speed_m_s;
+  const bool steered = asked.climb_m_s.has_value();
   const double deeper_m = goal.target_ned_m.z - state.root.position_ned_m.z;
-  const double sink_m_s = wanted_sink(deeper_m, swims, swimmer, dt_s);
+  const double sink_m_s = wanted_sink(deeper_m, asked.climb_m_s, swims, swimmer, dt_s);
   const double too_much_m_s = steady_velocity(state).z - sink_m_s;
   swimmer.climb_sum = swims ? std::clamp(swimmer.climb_sum + too_much_m_s * dt_s, -3.0, 3.0) : 0.0;
   const double way = std::clamp(ahead_m_s / kWay_m_s, 0.0, 1.0);
   follow(swimmer.rests, 1.0 - swimmer.effort * way, 0.5, dt_s);
   pace(body, settings, ahead_m_s, goal.speed_m_s, swims, state.life, swimmer, dt_s);
-  balance(body, too_much_m_s, state, swimmer, dt_s, inputs);
+  balance(body, too_much_m_s, steered, state, swimmer, dt_s, inputs);
 
   double turn = 0.0, pitch = 0.0;
   if (swims) {
@@ -424,11 +442,13 @@ void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& ask
       swimmer.turn_side = std::copysign(1.0, turn);
     turn = std::copysign(turn, swimmer.turn_side);
     const bool changes = swimmer.rises != 0.0;
-    if (changes) turn = std::clamp(turn, -kChangeTurn_rad, kChangeTurn_rad);
-    const double firm = changes ? kChangeFirm : 1.0;
+    if (changes && !steered) turn = std::clamp(turn, -kChangeTurn_rad, kChangeTurn_rad);
+    const double firm = steered ? kSteeredFirm : changes ? kChangeFirm : 1.0;
     const double climb_m_s =
         -sink_m_s + firm * 0.3 * too_much_m_s + firm * 0.04 * swimmer.climb_sum;
     pitch = std::clamp(climb_m_s / std::max(goal.speed_m_s, 0.2), -kMostPitch_rad, kMostPitch_rad);
+    // Legs that pitch a body without way push it the wrong way first.
+    if (steered) pitch *= std::lerp(kSteeredRestPitch, 1.0, way);
     // With so little way breath holds the depth.
     if (slowly)
       pitch *= std::clamp((goal.speed_m_s - settings.gliding_speed_m_s) / kLevelWay_m_s, 0.0, 1.0);
@@ -441,7 +461,9 @@ void swim(const Body& body, const SwimmerSettings& settings, const SwimGoal& ask
   scull(goal, state, hands, turn, swimmer, dt_s);
   const bool fills = (inputs.buttons & kInflate) != 0;
   const bool vents = swimmer.button_s < 0.0 && swimmer.lift_sum < 0.0 && !fills;
-  if (vents) pitch = std::max(pitch, kVentPitch_rad);
+  // On a way that a person steers the pitch is enough for a valve, but at the surface.
+  const bool climbs = steered && swimmer.rises != 0.0 && !is_awash(state);
+  if (vents && !climbs) pitch = std::max(pitch, kVentPitch_rad);
   // Head up, with the back bent against it, no valve of the jacket is high enough: the back
   // goes straight, and the valve at the shoulder lets the gas out.
   const bool straightens = vents && attitude.pitch_rad > kTilted_rad;

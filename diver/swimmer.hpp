@@ -3,6 +3,8 @@
 // Plain bytes in, plain bytes out; pure functions, any thread. World north, east, down.
 #pragma once
 
+#include <optional>
+
 #include "diver/flutter_kick.hpp"
 #include "diver/human_step.hpp"
 
@@ -15,6 +17,9 @@ struct SwimGoal {
   // Through the water; 0: hovers there, level: hands and fins hold the place, in a current as far
   // as legs last.
   double speed_m_s = 0.5;
+  // Up, negative down, at this rate, reached and left within seconds, whatever depth the target
+  // has: a person steers the depth himself. Nothing: to the target's depth, as above.
+  std::optional<double> climb_m_s;
 };
 
 struct SwimmerSettings {

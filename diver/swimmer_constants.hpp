@@ -69,6 +69,19 @@ inline constexpr double kChangeBegin = 0.2, kChangeLag_s = 12.0;
 // m in 75 s, at 1.4 times the turn takes 62 s.
 inline constexpr double kChangeFirm = 2.0, kChangeTurn_rad = 0.2;
 
+// A person who steers the depth (SwimGoal::climb_m_s) gets the rate and stops within seconds: by
+// breath first, since pitch needs way. Litres for each m/s off the rate, with this lag, down to the
+// residual volume and up by most of the inspiratory reserve of 2.3 l (LungSizes, body.hpp). Pitch
+// holds the rate this many times as firmly as a depth; without way by this share. From a hover at
+// 12 m the rate of 9 m a minute is reached in the third second; twice the breath or 2.7 times the
+// firmness changes rates by less than 1 m a minute, no pitch without way halves that of the second
+// second.
+inline constexpr double kSteeredBreath_l_s = 20.0, kSteeredOut_m3 = 1.2e-3, kSteeredIn_m3 = 2.0e-3;
+inline constexpr double kSteeredLag_s = 0.3, kSteeredFirm = 3.0, kSteeredRestPitch = 0.5;
+// With the hips so near to the surface a body is partly out of the water: the depth of a trunk with
+// a tank on it, and of heels that kick.
+inline constexpr double kAwash_m = 0.6;
+
 // Breath moves around its middle by half of the expiratory reserve, 1.2 l (LungSizes, body.hpp):
 // free.
 inline constexpr double kMostBreathBias_m3 = 0.6e-3;
@@ -138,11 +151,15 @@ inline constexpr double kPress_s = 0.25, kWait_s = 3.0, kSure_l_s = 4.0;
 // So much excess or missing lift is most of what breath can hold (kMostBreathBias_m3): a button is
 // pressed at once. Free.
 inline constexpr double kBreathHolds_l = 0.5;
-// A rising diver lets gas out at an excess lift of kUsualAt_l until kUsualTo_l, and in at a lack of
-// kUnusualAt_l until kUnusualTo_l; a sinking diver the other way round. At most kChangeSum_l_s of
+// A rising diver lets gas out at an excess lift of kUsualAt_l until usual_to_l, and in at a lack of
+// unusual_at_l until unusual_to_l; a sinking diver the other way round. At most kChangeSum_l_s of
 // unmet want of breath is remembered. Free.
-inline constexpr double kUsualAt_l = 0.2, kUsualTo_l = 0.0, kUsualWait_s = 2.0;
-inline constexpr double kUnusualAt_l = -0.8, kUnusualTo_l = -0.5;
+inline constexpr double kUsualAt_l = 0.2, kUsualWait_s = 2.0;
+struct LiftBand {
+  double usual_to_l = 0.0, unusual_at_l = -0.8, unusual_to_l = -0.5, wait_s = kWait_s;
+};
+// Where a person steers the depth the jacket is held as closely on either side.
+inline constexpr LiftBand kSteeredBand{0.1, -kUsualAt_l, -0.1, kUsualWait_s};
 inline constexpr double kChangeSum_l_s = 2.0;
 // A jacket with less gas is empty: 24 ml at the surface, a seventh of a press at 15 m. A tank below
 // this pressure fills none: it exceeds the ambient pressure down to 40 m by 0 to 4 bar.

@@ -14,7 +14,11 @@ namespace {
 
 constexpr double kPush = 0.1;                         // of a stick: less is its rest
 constexpr double kSpeed_m_s = 0.5, kFast_m_s = 0.68;  // with full gear (diver/swimmer.hpp)
-constexpr double kAhead_m = 5.0;                      // of the place that is swum to
+// Up and down as fast as asked, with a stick pushed to its end: 9 m a minute is the most that the
+// NOAA Diving Manual teaches (30 feet), 15 m the most that a dive computer allows deep down; it
+// warns near the surface. Let go of, the way up or down ends within kSettle_s.
+constexpr double kClimb_m_s = 9.0 / 60.0, kFastClimb_m_s = 15.0 / 60.0, kSettle_s = 2.5;
+constexpr double kAhead_m = 5.0;  // of the place that is swum to
 constexpr double kLongestStep_s = 0.05;
 // By keys: a turn aims so far beside the course, and one without a push ahead swims so slowly.
 constexpr double kTurn_rad = radians(60.0), kTurningShare = 0.4;
@@ -37,6 +41,10 @@ double eased(double since_s) {
 Pose between(const Pose& from, const Pose& to, double share) {
   return {glm::mix(from.position_m, to.position_m, share),
           glm::slerp(from.rotation, to.rotation, share)};
+}
+
+double most_climb_m_s(const DiveInput& input) {
+  return input.fast ? kFastClimb_m_s : kClimb_m_s;
 }
 
 double off_rad(double to_rad, double from_rad) {
@@ -97,11 +105,15 @@ void Wearer::send(SampleInbox& inbox, PayloadKind kind, const Payload& payload,
               payload});
 }
 
+bool Wearer::is_others(DiverGroup group) const {
+  return physics_->world().start_inputs().humans()[0].of(group).authority == Authority::kLive;
+}
+
 // Once a group, and anew with another hold. A device that the scene names keeps its group.
 void Wearer::claim(SampleInbox& inbox, DiverGroup group) {
   if (std::exchange(told_[static_cast<std::size_t>(group)], true)) return;
   claimed_[static_cast<std::size_t>(group)] = true;
-  if (physics_->world().start_inputs().humans()[0].of(group).authority == Authority::kLive) return;
+  if (is_others(group)) return;
   Event event{.group = static_cast<std::uint64_t>(group)};
   event.authority = static_cast<std::uint64_t>(Authority::kLive);
   event.source = *source_;
@@ -112,7 +124,8 @@ void Wearer::claim(SampleInbox& inbox, DiverGroup group) {
 // Gives back what was swum by keys, to the scene's choice.
 void Wearer::let_go(SampleInbox& inbox) {
   swims_ = views_ = false;
-  for (const DiverGroup group : {DiverGroup::kBody, DiverGroup::kButtons, DiverGroup::kGaze})
+  for (const DiverGroup group :
+       {DiverGroup::kBody, DiverGroup::kButtons, DiverGroup::kBreath, DiverGroup::kGaze})
     let_go(inbox, group);
 }
 
@@ -153,6 +166,7 @@ void Wearer::begin_swimming(double scene_time_s) {
   began_by_keys_ = by_keys_;
   swimmer_ = state().swimmer;
   stays_ned_m_ = state().human.root.position_ned_m;
+  settles_s_ = 0.0;
   swum_s_ = scene_time_s;
 }
 
@@ -262,9 +276,15 @@ std::optional<diver::SwimGoal> Wearer::pushed() const {
   const Vec3 push = world_from_head_->rotation * Vec3(input_.move.x, 0.0, input_.move.z) +
                     Vec3(0.0, input_.move.y, 0.0);
   const double share = std::min(1.0, glm::length(push));
+  const double speed_m_s = share * (input_.fast ? kFast_m_s : kSpeed_m_s);
+  std::optional<double> climb_m_s;
+  if (std::abs(push.y) > kPush) {
+    const double most_m_s = share * most_climb_m_s(input_);
+    climb_m_s = std::clamp(push.y / glm::length(push) * speed_m_s, -most_m_s, most_m_s);
+  }
   return diver::SwimGoal{state().human.root.position_ned_m +
                              diver::ned_from_world(push) * (kAhead_m / std::max(share, kPush)),
-                         share * (input_.fast ? kFast_m_s : kSpeed_m_s)};
+                         speed_m_s, climb_m_s};
 }
 
 // In a curve towards where the head looks, once that is too far aside.
@@ -303,7 +323,22 @@ diver::SwimGoal Wearer::pushed_by_keys() {
   const double share = std::min(1.0, glm::length(push));
   return {
       state().human.root.position_ned_m + diver::ned_from_world(glm::normalize(push)) * kAhead_m,
-      share * (input_.fast ? kFast_m_s : kSpeed_m_s)};
+      share * (input_.fast ? kFast_m_s : kSpeed_m_s),
+      std::abs(up) > kPush ? std::optional(up * most_climb_m_s(input_)) : std::nullopt};
+}
+
+// Where nothing asks for a way up or down, one that was let go of ends first; from there on the
+// depth is held, at rest and ahead.
+void Wearer::hold_depth(diver::SwimGoal& goal, double dt_s) {
+  if (goal.climb_m_s)
+    settles_s_ = kSettle_s;
+  else if (settles_s_ > 0.0)
+    goal.climb_m_s = 0.0;
+  if (goal.climb_m_s)
+    stays_ned_m_.z = state().human.root.position_ned_m.z;
+  else
+    goal.target_ned_m.z = stays_ned_m_.z;
+  settles_s_ -= dt_s;
 }
 
 // The swimmer's own kick; without a push the diver stays at the place. The buttons trim too, as
@@ -315,8 +350,10 @@ void Wearer::swim(SampleInbox& inbox, double scene_time_s) {
   const diver::HumanState& body = state().human;
   std::optional<diver::SwimGoal> pushed_to = by_keys_ ? pushed_by_keys() : pushed();
   if (!pushed_to) pushed_to = turned();
-  const diver::SwimGoal goal = pushed_to.value_or(diver::SwimGoal{stays_ned_m_, 0.0});
-  if (goal.speed_m_s > 0.0) stays_ned_m_ = body.root.position_ned_m;
+  diver::SwimGoal goal = pushed_to.value_or(diver::SwimGoal{stays_ned_m_, 0.0});
+  const Vec3& place = body.root.position_ned_m;
+  if (goal.speed_m_s > 0.0) stays_ned_m_ = {place.x, place.y, stays_ned_m_.z};
+  hold_depth(goal, dt_s);
   diver::HumanInputs limbs;
   diver::swim(human().body, human().file.swimmer, goal, body, swimmer_, dt_s, limbs);
   const TimeNs now = now_ns();
@@ -325,6 +362,9 @@ void Wearer::swim(SampleInbox& inbox, double scene_time_s) {
   claim(inbox, DiverGroup::kButtons);
   const std::uint64_t pressed = input_.jacket != 0 ? input_.jacket : limbs.buttons;
   send(inbox, PayloadKind::kButtons, JacketButtons{pressed}, now);
+  claim(inbox, DiverGroup::kBreath);
+  if (!is_others(DiverGroup::kBreath))  // a monitor's breath is its own
+    send(inbox, PayloadKind::kBreath, Breath{.bias_m3 = limbs.breath_bias_m3}, now);
 }
 
 }  // namespace neritic::testbed

@@ -48,12 +48,14 @@ class Wearer final : public SampleSource {
 
  private:
   void send(SampleInbox& inbox, PayloadKind kind, const Payload& payload, TimeNs captured_ns);
+  bool is_others(DiverGroup group) const;  // a device's that the scene names
   void claim(SampleInbox& inbox, DiverGroup group);
   void let_go(SampleInbox& inbox);
   void let_go(SampleInbox& inbox, DiverGroup group);
   bool begins_by_keys() const;
   bool begins_by_sticks() const;
   void begin_swimming(double scene_time_s);
+  void hold_depth(diver::SwimGoal& goal, double dt_s);
   std::optional<diver::SwimGoal> pushed() const;
   std::optional<diver::SwimGoal> turned();
   diver::SwimGoal pushed_by_keys();
@@ -98,7 +100,8 @@ class Wearer final : public SampleSource {
   bool swims_ = false, by_keys_ = false, began_by_keys_ = false;
   double yaw_rad_ = 0.0;  // by keys: the course that is held
   diver::SwimmerState swimmer_;
-  Vec3 stays_ned_m_{0.0};
+  Vec3 stays_ned_m_{0.0};   // its depth is held too while he swims level
+  double settles_s_ = 0.0;  // until the way up or down that was let go of has ended
   double swum_s_ = 0.0;
 };
 

@@ -61,6 +61,52 @@ TEST_F(DiverKeys, AheadRoundDownAndStay) {
   EXPECT_LT(glm::distance(start, place()), 1.2);
 }
 
+// Fast, as nobody is taught to rise, and slower than that with what a frame takes of the limbs.
+TEST_F(DiverKeys, GoesUpAndDownAsFastAsAskedAndRestsWhereTheKeyIsLetGo) {
+  wearer_->swim_by_keys(true);
+  hold({}, 5.0);
+  for (const auto& [up, fast, rate_m_s] :
+       {std::tuple(-1.0, false, 0.15), std::tuple(1.0, false, 0.15),
+        std::tuple(-1.0, true, 0.25)}) {
+    hold({.move = {0, up, 0}, .fast = fast}, 4.0);
+    const double from_m = place().y;
+    hold({.move = {0, up, 0}, .fast = fast}, 6.0);
+    EXPECT_NEAR(up * (place().y - from_m), 6.0 * rate_m_s, 2.0 * rate_m_s) << up << fast;
+    EXPECT_EQ(phase(DiverGroup::kBreath), GroupPhase::kLive);
+    const double let_go_m = place().y;
+    hold({}, 3.0);
+    const double rests_m = place().y;
+    EXPECT_LT(std::abs(rests_m - let_go_m), 3.0 * rate_m_s) << up << fast;
+    for (int second = 0; second < 20; ++second) {
+      hold({}, 1.0);
+      EXPECT_NEAR(place().y, rests_m, 0.4) << up << fast;
+    }
+  }
+}
+
+TEST_F(DiverKeys, KeepsTheDepthAheadAfterItWasReached) {
+  wearer_->swim_by_keys(true);
+  hold({.move = {0, -1, -1}}, 8.0);  // W and Q
+  hold({.move = {0, 0, -1}}, 4.0);
+  const double depth_m = place().y;
+  for (int second = 0; second < 30; ++second) {
+    hold({.move = {0, 0, -1}}, 1.0);
+    EXPECT_NEAR(place().y, depth_m, 0.6);
+  }
+}
+
+TEST_F(DiverKeys, StaysAtTheSurfaceWhileHeAsksToRiseAndLeavesItWhenAsked) {
+  wearer_->swim_by_keys(true);
+  hold({.move = {0, 1, 0}, .fast = true}, 70.0);
+  const double top_m = place().y;
+  EXPECT_GT(top_m, -0.8);
+  hold({.move = {0, 1, 0}}, 10.0);
+  EXPECT_NEAR(place().y, top_m, 0.4);
+  EXPECT_LT(glm::length(state().human.root.velocity.angular()), 1.5);
+  hold({.move = {0, -1, 0}}, 20.0);
+  EXPECT_LT(place().y, top_m - 0.8);
+}
+
 TEST_F(DiverKeys, TheJacketsKeysGoBeforeTheSwimmersOwn) {
   wearer_->swim_by_keys(true);
   hold({.jacket = diver::kInflate}, 1.0);
