@@ -96,11 +96,13 @@ struct GroupState {
   Authority authority = Authority::kAutopilot, then = Authority::kAutopilot;
   std::uint64_t source = 0;
   std::uint64_t heard = 0, unheeded = 0, unheeded_source = 0;
+  std::uint64_t jumps = 0;  // of limbs, from one sample to the next (simulation/joint_ease.hpp)
 
   static void fields(auto&& field, auto& self) {
     fields_but_sources(field, self);
     field("source", self.source);
     field("unheeded_source", self.unheeded_source);
+    field("jumps", self.jumps);
   }
   // Without numbers that depend on the order in which sources were opened.
   static void fields_but_sources(auto&& field, auto& self) {

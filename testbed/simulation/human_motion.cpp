@@ -143,6 +143,46 @@ std::uint64_t moved_parts(const DiverInputs& inputs, bool head, bool hands, bool
   return parts;
 }
 
+// Which source has a joint: tracked hands bring the arms along, a tracked head in its place the
+// spine; the rest is the body's.
+SourcesOfJoints sources_of_joints(const DiverInputs& inputs, bool head, bool hands) {
+  SourcesOfJoints out;
+  out.fill(kBodySource);
+  const auto give = [&](LimbSource source, std::initializer_list<diver::Segment> segments) {
+    for (const diver::Segment segment : segments) out[diver::joint_of(segment)] = source;
+  };
+  using namespace diver;
+  if (head) give(kHeadSource, {kHead});
+  if (head && (inputs.head.placed & kHeadPlaced)) give(kHeadSource, {kAbdomen, kThorax});
+  if (!hands) return out;
+  give(kHandsSource, {kLeftHand, kRightHand});
+  if (inputs.hands_by_pose == 0) return out;
+  give(kHandsSource, {kLeftUpperArm, kLeftForearm, kRightUpperArm, kRightForearm});
+  return out;
+}
+
+// Counts the sources whose limbs jump in this step. Whether one did.
+bool count_jumps(const DiverInputs& inputs, const std::array<GroupState, kDiverGroups>& before,
+                 const diver::JointRotations& joints, double dt_s, HumanPhysics& state) {
+  constexpr std::array kGroups{DiverGroup::kBody, DiverGroup::kHead, DiverGroup::kHands};
+  static_assert(kGroups.size() == kLimbSources);
+  std::uint64_t live = 0, fresh = 0;
+  for (std::size_t i = 0; i < kLimbSources; ++i) {
+    const auto group = static_cast<std::size_t>(kGroups[i]);
+    const GroupState& now = state.groups[group];
+    if (acting(now) != Authority::kLive) continue;
+    live |= std::uint64_t{1} << i;
+    if (now.heard != before[group].heard) fresh |= std::uint64_t{1} << i;
+  }
+  const SourcesOfJoints sources =
+      sources_of_joints(inputs, live >> kHeadSource & 1, live >> kHandsSource & 1);
+  const std::uint64_t jumped =
+      note_jumps(state.ease, state.human.held.joints, joints, sources, live, fresh, dt_s);
+  for (std::size_t i = 0; i < kLimbSources; ++i)
+    state.groups[static_cast<std::size_t>(kGroups[i])].jumps += jumped >> i & 1;
+  return jumped != 0;
+}
+
 // Where slack muscles let limbs go: straight.
 void relax(double share, diver::JointRotations& joints) {
   constexpr double kThere = 1e-9;
@@ -217,9 +257,11 @@ diver::HumanInputs acting_inputs(const PhysicsHuman& human, const DiverInputs& i
     return changed(before[i], state.groups[i]);
   };
   const std::uint64_t parts = moved_parts(inputs, head, hands, able.conscious);
-  if (another(DiverGroup::kBody) || another(DiverGroup::kHands) || another(DiverGroup::kHead) ||
-      parts != state.ease.parts)
-    begin_ease(state.ease, state.human.held.joints, out.joints, dt_s);
+  const bool others = another(DiverGroup::kBody) || another(DiverGroup::kHands) ||
+                      another(DiverGroup::kHead) || parts != state.ease.parts;
+  if (others) state.ease.paces = {};
+  const bool jumped = count_jumps(inputs, others ? state.groups : before, out.joints, dt_s, state);
+  if (others || jumped) begin_ease(state.ease, state.human.held.joints, out.joints, dt_s);
   state.ease.parts = parts;
   step_ease(state.ease, out.joints, dt_s);
 

@@ -39,7 +39,8 @@ TEST_F(DivePhysics, PlaysARecordingAndTellsOfLostSilentAndUnusedSamples) {
                                               {"phase", "lost"},
                                               {"used", 3},
                                               {"not_used", 0},
-                                              {"fell_silent", 1}}));
+                                              {"fell_silent", 1},
+                                              {"jumped", 0}}));
   EXPECT_EQ(inputs["fault"]["not_used"], 1);
   EXPECT_EQ(json["sources"][0]["name"], "joystick");
   EXPECT_EQ(json["sources"][0]["accepted"], 3);

@@ -153,7 +153,8 @@ nlohmann::json groups_json(const Groups& groups, const std::vector<std::string>&
         {"phase", name_of(state.phase)},
         {"used", state.heard},
         {"not_used", state.unheeded},
-        {"fell_silent", state.losses}};
+        {"fell_silent", state.losses},
+        {"jumped", state.jumps}};
   }
   return json;
 }

@@ -176,6 +176,12 @@ std::string group_lines(const std::string& name, const Groups& groups, std::uint
     if (groups[i].phase != GroupPhase::kLost && groups[i].losses > 0)
       lines.push_back(fmt::format("{}: {}: its source fell silent {} times", name,
                                   name_of(static_cast<Group>(i)), groups[i].losses));
+  for (std::size_t i = 0; i < groups.size(); ++i)
+    if (groups[i].jumps > 0)
+      lines.push_back(
+          fmt::format("{}: {}: limbs of its source ({}) jumped {} time{}, and were eased", name,
+                      name_of(static_cast<Group>(i)), authority_words(groups[i], sources),
+                      groups[i].jumps, groups[i].jumps == 1 ? "" : "s"));
   if (refused_events > 0)
     lines.push_back(fmt::format("{}: {} events refused", name, refused_events));
   std::string text;

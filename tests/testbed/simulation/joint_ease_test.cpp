@@ -2,6 +2,7 @@
 // body is not thrown about; a source that goes on where the limbs are is followed to the bit.
 #include "testbed/simulation/joint_ease.hpp"
 
+#include "engine/core/random.hpp"
 #include "testbed/samples/riding.hpp"
 #include "tests/testbed/simulation/devices.hpp"
 
@@ -111,6 +112,104 @@ TEST(JointEase, WhoGoesOnWhereTheLimbsAreIsFollowedToTheBit) {
     EXPECT_EQ(diver_of(dive).ease.left_s, 0.0) << step;
     const Quat& held = diver_of(dive).human.held.joints[diver::joint_of(diver::kLeftForearm)];
     EXPECT_LT(angle_between(held, elbow), 1e-12) << step;
+  }
+}
+
+// The fastest turns of body and joints, and the jumps counted, when a suit of that rate goes on in
+// another posture after that gap.
+struct Jump {
+  Thrown thrown;
+  std::uint64_t jumps = 0, losses = 0;
+};
+Jump jump_of(double suit_hz, double gap_s) {
+  TestDive dive = dive_of(hover_text("body = \"suit\""));
+  Device suit(dive, "suit", "diver/joints");
+  const int each = static_cast<int>(240.0 / suit_hz);
+  int step = 0;
+  const auto say = [&](const BodyJoints& joints) {
+    return [&, joints] {
+      if (step++ % each == 0) suit.say(joints);
+    };
+  };
+  thrown_in(dive, 3.0, say({}));
+  dive.run(gap_s);
+  Jump out;
+  out.thrown = thrown_in(dive, 3.0, say(sitting()));
+  expect_joints(dive, sitting());
+  const GroupState& body = group(dive, DiverGroup::kBody);
+  out.jumps = body.jumps;
+  out.losses = body.losses;
+  return out;
+}
+
+// The stream jumps, or is silent for less than its hold and goes on elsewhere.
+TEST(JointEase, ASourceThatJumpsDoesNotThrowTheBodyAndIsCounted) {
+  for (const double suit_hz : {20.0, 60.0, 240.0})
+    for (const double gap_s : {0.0, 0.3}) {
+      const Jump jump = jump_of(suit_hz, gap_s);
+      EXPECT_LT(jump.thrown.joint_rad_s, 1.1 * kFastestEase_rad_s) << suit_hz << ", " << gap_s;
+      EXPECT_GT(jump.thrown.joint_rad_s, 0.5 * kFastestEase_rad_s) << suit_hz << ", " << gap_s;
+      EXPECT_LT(jump.thrown.body_rad_s, 2.5) << suit_hz << ", " << gap_s;
+      EXPECT_EQ(jump.jumps, 1u) << suit_hz << ", " << gap_s;
+      EXPECT_EQ(jump.losses, 0u) << suit_hz << ", " << gap_s;
+    }
+}
+
+TEST(JointEase, TrackedHandsThatJumpAreEasedAndCounted) {
+  TestDive dive = dive_of(hover_text("hands = \"headset\""));
+  Device hands(dive, "headset", "diver/hand_poses");
+  const Quat none(1.0, 0.0, 0.0, 0.0);
+  const auto at = [&](double forward_m, double up_m) {
+    return [&hands, none, forward_m, up_m] {
+      hands.say(
+          HandPoses{{Pose{Vec3(-0.3, up_m, forward_m), none}, Pose{Vec3(0.3, 0.5, -0.3), none}},
+                    1 | kHandsRide});
+    };
+  };
+  thrown_in(dive, 3.0, at(-0.3, 0.5));
+  ASSERT_EQ(group(dive, DiverGroup::kHands).jumps, 0u);
+  const Thrown thrown = thrown_in(dive, 3.0, at(0.3, -0.1));
+  EXPECT_EQ(group(dive, DiverGroup::kHands).jumps, 1u);
+  EXPECT_EQ(group(dive, DiverGroup::kBody).jumps, 0u);
+  EXPECT_LT(thrown.joint_rad_s, 1.5 * kFastestEase_rad_s);
+  EXPECT_GT(thrown.joint_rad_s, 0.5);
+}
+
+// Elbows and knees faster than limbs go in water, by suits of several rates, with samples that are
+// lost one by one.
+TEST(JointEase, QuickMotionsPassUnchanged) {
+  for (const int each : {1, 4, 8}) {
+    TestDive dive = dive_of(hover_text("body = \"suit\""));
+    Device suit(dive, "suit", "diver/joints");
+    dive.run(2.0);
+    BodyJoints body{diver_of(dive).human.held.joints};
+    const auto say = [&](double time_s) {
+      for (const diver::Segment segment : {diver::kLeftForearm, diver::kRightLowerLeg})
+        body.joints[diver::joint_of(segment)] =
+            turned(0.9 * (1.0 - std::cos(10.0 * time_s)),
+                   Vec3(0, segment == diver::kLeftForearm ? 1.0 : -1.0, 0));
+      suit.say(body);
+    };
+    for (int step = 0; step < 480; ++step) {  // comes to the first posture
+      say(0.0);
+      dive.simulation->advance(1);
+    }
+    ASSERT_EQ(diver_of(dive).ease.left_s, 0.0);
+    std::uint64_t random = 7;
+    bool lost = false;
+    for (int step = 1; step <= 960; ++step) {
+      random = mix64(random);
+      if (step % each == 0) {
+        lost = !lost && random % 4 == 0;
+        if (!lost) say(step / 240.0);
+      }
+      dive.simulation->advance(1);
+      ASSERT_EQ(diver_of(dive).ease.left_s, 0.0) << each << ", " << step;
+      for (std::size_t i = 0; i < diver::kJoints; ++i)
+        ASSERT_LT(angle_between(diver_of(dive).human.held.joints[i], body.joints[i]), 1e-12)
+            << each << ", " << step;
+    }
+    EXPECT_EQ(group(dive, DiverGroup::kBody).jumps, 0u) << each;
   }
 }
 
