@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/core/clock.hpp"
 #include "engine/sim/step_clock.hpp"
 
 namespace neritic::testbed {
@@ -32,12 +33,27 @@ TimeNs Clock::wait_for_due() {
   return pacer_->taken_ns(given_, given_ - 1 - due_);
 }
 
+// A display's time that hardly moves for a second stands: frames go on by the host's until it has
+// caught up, so that what it is to show ends.
+void Clock::see(TimeNs display_at_ns) {
+  constexpr TimeNs kStands_ns = 1'000'000'000;
+  constexpr std::int64_t kHardly = 50;  // times as slow as the host's
+  const TimeNs host_ns = now_ns(), run_ns = run_ ? run_->now() : host_ns;
+  const bool first = frames_ == 1;
+  // A pause begins now, before the frame that was to be seen already.
+  seen_ns_ = std::max(seen_ns_, run_ ? run_->at(display_at_ns) : display_at_ns);
+  if (first || kHardly * (display_at_ns - moved_to_ns_) >= host_ns - moved_ns_)
+    moved_ns_ = host_ns, moved_to_ns_ = display_at_ns;
+  else if (host_ns - moved_ns_ > kStands_ns)
+    seen_ns_ += run_ns - saw_ns_;
+  saw_ns_ = run_ns;
+  if (first) begun_ns_ = seen_ns_;
+}
+
 FrameTime Clock::next(std::optional<TimeNs> display_at_ns) {
   const auto frame = static_cast<double>(frames_++);
   if (real_ && display_at_ns) {
-    // A pause begins now, before the frame that was to be seen already.
-    seen_ns_ = std::max(seen_ns_, run_ ? run_->at(*display_at_ns) : *display_at_ns);
-    if (frame == 0.0) begun_ns_ = seen_ns_;
+    see(*display_at_ns);
     const double time_s = start_s_ + 1e-9 * static_cast<double>(seen_ns_ - begun_ns_);
     return {time_s, time_s, seen_ns_, *display_at_ns};
   }

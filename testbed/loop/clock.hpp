@@ -20,7 +20,8 @@ struct FrameTime {
 
 class Clock {
  public:
-  // The host's. If a display says when it shows the frames, their times are the display's.
+  // The host's. If a display says when it shows the frames, their times are the display's, but
+  // those of one whose time stands go on by the host's after a second.
   // Otherwise a frame is due each period; after a delay up to `catch_up` come at once, and time
   // runs on over the others, which are dropped. catch_up: kCatchUp for steps, 1 for pictures, so
   // that a late one does not make the next ones hurry. run: that a person may stop or speed up, on
@@ -44,13 +45,17 @@ class Clock {
   Clock(bool real, double start_s, double period_s, int catch_up, sim::RunClock* run)
       : real_(real), start_s_(start_s), period_s_(period_s), catch_up_(catch_up), run_(run) {}
   TimeNs wait_for_due();
+  void see(TimeNs display_at_ns);
 
   bool real_;
   double start_s_, period_s_;
   int catch_up_;
   sim::RunClock* run_;
-  std::uint64_t frames_ = 0;             // so far, with those before the first
-  TimeNs begun_ns_ = 0, seen_ns_ = 0;    // of the first and the newest frame of a display
+  std::uint64_t frames_ = 0;           // so far, with those before the first
+  TimeNs begun_ns_ = 0, seen_ns_ = 0;  // of the first and the newest frame of a display
+  // When the time of a display moved on last, by the host's clock, and to what; and when a frame
+  // was asked for last, on the clock that paces the run.
+  TimeNs moved_ns_ = 0, moved_to_ns_ = 0, saw_ns_ = 0;
   std::optional<sim::StepPacer> pacer_;  // without a display
   // Frames that the pacer gave last, and those of them that were not taken yet.
   int given_ = 0, due_ = 0;

@@ -126,6 +126,16 @@ TEST_F(HeadsetWearer, ADiveOfSoManySecondsEndsThoughTheRuntimesTimeStands) {
   EXPECT_LT(now_ns() - begun_ns, 60'000'000'000);
 }
 
+// In lock-step with the pictures, as a replay runs.
+TEST_F(HeadsetWearer, SoDoesOneInLockStepWithItsPictures) {
+  fakes::FakeHeadset fake("size 16 16\nperiod 0.00001\nhead 0 0 1.6 0\n");
+  end_after(0.5);
+  const TimeNs begun_ns = now_ns();
+  NERITIC_ASSERT_STATUS(dive(scene_, 0));
+  EXPECT_GE(physics_->newest().time_s, 0.5 - 1e-9);
+  EXPECT_LT(now_ns() - begun_ns, 60'000'000'000);
+}
+
 // A wearer who holds still neither rows nor brakes the diver who swims on by plan, however seldom
 // frames come.
 TEST_F(HeadsetWearer, WhatIsTrackedRidesWithTheBodyThatSwimsOn) {

@@ -239,6 +239,27 @@ TEST(LoopClock, ARealClockFollowsTheDisplayOrWaitsAndDropsWhatIsTooLate) {
 }
 
 // A display says when its pictures are seen; the scene's time is the run's, which never falls.
+// Its frames go on by the host's time after a second, and by the display's once that is ahead again.
+TEST(LoopClock, ADisplayWhoseTimeStandsDoesNotHoldTheFrames) {
+  sim::HostClock host;
+  Clock clock = Clock::real(5.0, 0.1);
+  const TimeNs begun_ns = host.now(), stands_ns = 1'000'000'000;
+  double last_s = clock.next(stands_ns).time_s;
+  EXPECT_EQ(last_s, 5.0);
+  while (host.now() < begun_ns + 1'500'000'000) {
+    const TimeNs passed_ns = host.now() - begun_ns;
+    const double time_s = clock.next(stands_ns).time_s;
+    if (passed_ns < 900'000'000) EXPECT_EQ(time_s, 5.0);
+    EXPECT_GE(time_s, last_s);
+    last_s = time_s;
+    host.wait_until(host.now() + 20'000'000);
+  }
+  EXPECT_GT(last_s, 5.3);
+  EXPECT_LT(last_s, 5.6);
+  EXPECT_DOUBLE_EQ(clock.next(stands_ns + 700'000'000).time_s, 5.7);
+  EXPECT_DOUBLE_EQ(clock.next(stands_ns + 800'000'000).time_s, 5.8);
+}
+
 TEST(LoopClock, FramesOfAClockThatAPersonStopsStandAndGoOn) {
   sim::SimulatedClock host;
   sim::RunClock run(host);
