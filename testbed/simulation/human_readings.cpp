@@ -75,6 +75,10 @@ HumanReading human_reading(const PhysicsHuman& human, const HumanPhysics& state,
                    .gaze_quality = quality(DiverGroup::kGaze, diver::kGazeMeasured),
                    .breath_quality = quality(DiverGroup::kBreath, diver::kBreathMeasured),
                    .heart_quality = quality(DiverGroup::kHeart, diver::kHeartMeasured)};
+  // A source that only says how deep the diver breathes has no monitor that could be poor.
+  if (out.breath_quality == ValueQuality::kPoor &&
+      state.human.held.instruments.breath.time_s == 0.0)
+    out.breath_quality = ValueQuality::kModelled;
   if (out.gaze_quality == ValueQuality::kGood && seen.doubtful)
     out.gaze_quality = ValueQuality::kPoor;
   // A model's heart beats without variation.

@@ -3,6 +3,7 @@
 
 #include "diver/frames.hpp"
 #include "diver/jacket.hpp"
+#include "testbed/simulation/human_readings.hpp"
 #include "testbed/view/dive_camera.hpp"
 #include "testbed/view/wearer.hpp"
 #include "tests/testbed/simulation/devices.hpp"
@@ -73,6 +74,9 @@ TEST_F(DiverKeys, GoesUpAndDownAsFastAsAskedAndRestsWhereTheKeyIsLetGo) {
     hold({.move = {0, up, 0}, .fast = fast}, 6.0);
     EXPECT_NEAR(up * (place().y - from_m), 6.0 * rate_m_s, 2.0 * rate_m_s) << up << fast;
     EXPECT_EQ(phase(DiverGroup::kBreath), GroupPhase::kLive);
+    EXPECT_NE(state().human.held.breath_bias_m3, 0.0);
+    EXPECT_EQ(human_reading(physics_->world().humans()[0], state(), {}).breath_quality,
+              ValueQuality::kModelled);
     const double let_go_m = place().y;
     hold({}, 3.0);
     const double rests_m = place().y;
