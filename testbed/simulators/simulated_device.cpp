@@ -10,6 +10,7 @@
 #include "engine/net/jacket_wire.hpp"
 #include "engine/net/rtp.hpp"
 #include "testbed/devices/suit_posture.hpp"
+#include "testbed/simulators/breath_sound.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -192,13 +193,14 @@ class SimulatedJacket final : public SimulatedDevice {
 };
 static_assert(diver::kInflate == 1 && diver::kDeflate == 2 && diver::kDump == 4);
 
-// A microphone at the regulator: bright bursts of breathing in, dull ones of breathing out.
+// A microphone at the regulator.
 class SimulatedMicrophone final : public SimulatedDevice {
  public:
   explicit SimulatedMicrophone(const SimulatedDeviceOptions& options)
       : options_(options),
         rate_hz_(options.rate_hz > 0.0 ? options.rate_hz : 16'000.0),
-        ticks_(1.0 / kPacket_s) {}
+        ticks_(1.0 / kPacket_s),
+        sound_(rate_hz_, options.seed) {}
   void run(const PersonActs& acts, TimeNs now_ns, const Send& send) override {
     ticks_.until(options_.clock.at(now_ns), [&](TimeNs at_ns) {
       packet(acts, at_ns, options_.clock.host(at_ns, now_ns), send);
@@ -229,22 +231,14 @@ class SimulatedMicrophone final : public SimulatedDevice {
       const double value = sound[count_++ % sound.size()];
       return std::isfinite(value) ? static_cast<float>(value) : 0.0F;
     }
-    breath_ += acts.breath_bpm / 60.0 / rate_hz_;
-    breath_ -= std::floor(breath_);
-    const double white = 2.0 * random_uniform({options_.seed, 0x627265, 0}, count_++) - 1.0;
-    dull_ += 0.15 * (white - dull_);
-    const double bright = white - dull_;
-    const double in = breath_ < 0.35 ? std::sin(kPi * breath_ / 0.35) : 0.0;
-    const double out =
-        breath_ > 0.45 && breath_ < 0.85 ? std::sin(kPi * (breath_ - 0.45) / 0.4) : 0.0;
-    return static_cast<float>(0.25 * in * bright + 0.5 * out * dull_ + 0.002 * white);
+    return sound_.next(acts.breath_bpm);
   }
   SimulatedDeviceOptions options_;
   double rate_hz_;
   Ticks ticks_;
   std::uint32_t timestamp_ = 0;
-  std::uint64_t sent_ = 0, count_ = 0;
-  double breath_ = 0.0, dull_ = 0.0;
+  std::uint64_t sent_ = 0, count_ = 0;  // packets; samples of the recording
+  BreathSound sound_;
 };
 
 // An eye tracker of 120 samples a second (UGZD), with the noise of a good one.
