@@ -48,8 +48,9 @@ Status RecordedSource::push(SampleInbox& inbox, const SampleLog::Entry& entry) {
   Last& last = last_[logged.source * log_.streams.size() + logged.stream];
   // A device that was restarted while it was recorded began to count anew. In a burst the inbox
   // replaced samples that it had accepted: they left a gap.
-  if (last.any && (logged.sequence <= last.sequence || logged.captured_ns < last.captured_ns ||
-                   logged.sequence - last.sequence > SequenceTrack::kMostMissing))
+  if (last.any &&
+      (logged.sequence <= last.sequence || logged.captured_ns < last.captured_ns ||
+       logged.sequence - last.sequence > static_cast<std::uint64_t>(SequenceTrack::kMostMissing)))
     NERITIC_TRY_STATUS(open(inbox, logged.source));
   last = {true, logged.sequence, logged.captured_ns};
 
