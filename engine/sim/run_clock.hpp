@@ -20,6 +20,7 @@ class RunClock final : public StepClock {
   TimeNs at(TimeNs host_ns);
   // Waits in short pieces, since speed and pause may change meanwhile.
   void wait_until(TimeNs run_ns) override;
+  bool stands() override { return paused(); }
   // A time at which the run stood gives when it went on, or now.
   TimeNs host_at(TimeNs run_ns) override;
 

@@ -85,7 +85,7 @@ class Simulation {
   // Any thread, also while the simulation's thread runs. The reader is dropped before this.
   SnapshotReader<State> reader() { return source_.reader(); }
 
-  // each sees every state on the stepping thread, right after its step; its time is the step's.
+  // each sees every state on the thread that stepped, right after its step; its time is the step's.
   // used sees each message that the next step uses, before that. Not while the thread runs.
   void observe(std::function<void(const Snapshot<State>&)> each,
                std::function<void(const Message&)> used = {}) {
@@ -149,6 +149,12 @@ class Simulation {
     thread_->stop();
     pace_ = thread_->counts() + pace_;
     thread_.reset();
+  }
+  // With the thread: the steps that are due and, up to a whole step before its time, the next one,
+  // on the caller's thread, which the observer then sees too. False where none could be taken
+  // (StepThread::hasten). The thread that owns this.
+  bool hasten(TimeNs most_step_ns) {
+    return thread_ && thread_->hasten(std::llround(options_.step_s * 1e9), most_step_ns);
   }
   bool running() const { return thread_ != nullptr; }
   // The counts of all threads so far.

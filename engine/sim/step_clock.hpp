@@ -13,6 +13,8 @@ class StepClock {
   virtual TimeNs now() = 0;
   // Returns when now() is time_ns or later, or earlier where the wait was disturbed.
   virtual void wait_until(TimeNs time_ns) = 0;
+  // Whether time does not pass until someone says so.
+  virtual bool stands() { return false; }
   // The host's time at a time of this clock near now.
   virtual TimeNs host_at(TimeNs time_ns) { return time_ns; }
 };

@@ -38,4 +38,11 @@ int StepPacer::take(TimeNs now_ns) {
   return static_cast<int>(run);
 }
 
+bool StepPacer::take_early(TimeNs now_ns, TimeNs most_early_ns) {
+  if (next_ns() - now_ns > most_early_ns) return false;
+  ++done_;
+  ++counts_.steps;
+  return true;
+}
+
 }  // namespace neritic::sim

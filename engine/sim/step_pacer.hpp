@@ -29,9 +29,11 @@ class StepPacer {
 
   // How many steps to run at now_ns; they count as run. A clock that goes back asks for none.
   int take(TimeNs now_ns);
+  // Whether the next step is due within so long; then it counts as run.
+  bool take_early(TimeNs now_ns, TimeNs most_early_ns);
   // When the next step is due.
   TimeNs next_ns() const { return due_ns(done_ + 1); }
-  // When the i-th of the steps that take() just gave was due, i from 0.
+  // When the i-th of the steps that take() or take_early() just gave was due, i from 0.
   TimeNs taken_ns(int taken, int i) const { return due_ns(done_ - taken + 1 + i); }
   const Counts& counts() const { return counts_; }
 

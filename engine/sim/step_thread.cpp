@@ -18,15 +18,39 @@ void StepThread::stop() {
 void StepThread::run() {
   set_urgency(ThreadUrgency::kSoon);
   while (!stop_) {
-    const int steps = pacer_.take(clock_.now());
-    for (int i = 0; i < steps; ++i) step_(pacer_.taken_ns(steps, i));
-    const StepPacer::Counts& counts = pacer_.counts();
-    steps_ = counts.steps;
-    caught_up_ = counts.caught_up;
-    dropped_ = counts.dropped;
-    dropped_ns_ = counts.dropped_ns;
-    if (steps == 0) clock_.wait_until(pacer_.next_ns());
+    TimeNs next_ns = 0;
+    {
+      const std::scoped_lock lock(mutex_);
+      const int steps = pacer_.take(clock_.now());
+      step(steps);
+      if (steps > 0) continue;
+      next_ns = pacer_.next_ns();
+    }
+    clock_.wait_until(next_ns);
   }
+}
+
+void StepThread::step(int steps) {
+  for (int i = 0; i < steps; ++i) {
+    const TimeNs begun_ns = now_ns();
+    step_(pacer_.taken_ns(steps, i));
+    took_ns_ = now_ns() - begun_ns;
+  }
+  const StepPacer::Counts& counts = pacer_.counts();
+  steps_ = counts.steps;
+  caught_up_ = counts.caught_up;
+  dropped_ = counts.dropped;
+  dropped_ns_ = counts.dropped_ns;
+}
+
+bool StepThread::hasten(TimeNs most_early_ns, TimeNs most_step_ns) {
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock || took_ns_ > most_step_ns || clock_.stands()) return false;
+  const int due = pacer_.take(clock_.now());
+  step(due);
+  const bool early = pacer_.take_early(clock_.now(), most_early_ns);
+  if (early) step(1);
+  return early || due > 0;
 }
 
 StepPacer::Counts StepThread::counts() const {

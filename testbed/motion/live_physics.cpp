@@ -129,26 +129,24 @@ double LivePhysics::follow(TimeNs display_ns, double time_s, const Stop& stop) {
   return shown_s_;
 }
 
-// Waits for the next step if it is due soon; for its result at most kMostLate_ns.
-void LivePhysics::await_step() {
-  constexpr TimeNs kMostLate_ns = 1'000'000, kLook_ns = 50'000;
-  const auto& newest = reader_->newest();
-  const std::uint64_t step = newest.step;
-  const double step_ns = 1e9 * world_->step_s();
-  const TimeNs due_ns = newest.due_ns + static_cast<TimeNs>(step_ns);
-  const auto left_ns = static_cast<double>(due_ns - clock_->now());
-  // One that is late by more than a step comes when it comes: the machine is slow, or time stands.
-  if (!simulation_->running() || left_ns > wait_share_ * step_ns || left_ns < -step_ns) return;
-  clock_->wait_until(due_ns);
-  if (clock_->now() < due_ns) return;  // paused or slowed down meanwhile
-  const TimeNs end_ns = now_ns() + kMostLate_ns;
+// A step that runs on the thread just now shows what came too: it is waited for.
+void LivePhysics::hasten_step() {
+  constexpr TimeNs kLook_ns = 50'000;
+  if (!simulation_->running() || clock_->stands() || simulation_->hasten(kMostStep_ns)) return;
+  const std::uint64_t step = reader_->newest().step;
+  const TimeNs step_ns = std::llround(1e9 * world_->step_s());
+  const TimeNs late_ns = clock_->now() - reader_->newest().due_ns - step_ns;
+  // One that is not due does not run; one that is late by more comes when it comes.
+  if (late_ns < 0 || late_ns > step_ns) return;
+  const TimeNs end_ns = now_ns() + kMostStep_ns;
   for (reader_->update(); reader_->newest().step == step && now_ns() < end_ns; reader_->update())
     host_.wait_until(now_ns() + kLook_ns);
 }
 
 double LivePhysics::follow_thread(TimeNs display_ns) {
   reader_->update();
-  if (wait_share_ > 0.0) await_step();
+  if (hastens_) hasten_step();
+  reader_->update();
   const auto& newest = reader_->newest();
   (void)poll(newest.time_s);  // listening() tells of a failure
   if (newest.step == start_step_) return shown_s_;

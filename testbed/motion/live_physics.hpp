@@ -32,8 +32,8 @@ class LivePhysics {
   ~LivePhysics();
 
   // each sees every state in turn, the start first, and used each sample that the next step uses:
-  // on the stepping thread, which is the caller's in lock-step. Empty: nobody does from now on.
-  // Before start() or after stop().
+  // on the thread that steps, which is the caller's in lock-step and where follow() hastens steps.
+  // Empty: nobody does from now on. Before start() or after stop().
   using Observer = std::function<void(const sim::Snapshot<PhysicsState>&)>;
   using Used = std::function<void(const Sample&)>;
   void observe(const Observer& each, const Used& used = {});
@@ -58,11 +58,11 @@ class LivePhysics {
   // its sources. Lock-step: the loop's clock has to begin anew there.
   Status go_to(const SavedState& saved);
   std::uint64_t restored() const { return restored_; }  // how often it went so
-  // Beside a thread: follow() waits for a step that is due within this share of a step, so that a
-  // picture shows what came until then. A share w costs a picture w * w / 2 of a step on average,
-  // and makes the state that it shows younger by w - w * w / 2. 0, the default: never.
-  void await_steps(double share) { wait_share_ = share; }
-  static constexpr double kPictureWait = 0.5;  // of a window
+  // Beside a thread: follow() takes the next step at once, up to a whole step before its time, so
+  // that a picture shows all that came until it begins. It costs the picture that step; one that
+  // takes longer than kMostStep_ns is left to the thread. Off by default.
+  void hasten_steps(bool hasten) { hastens_ = hasten; }
+  static constexpr TimeNs kMostStep_ns = 1'000'000;
   // After the last step; newest() and simulation() may be asked then, at any pace.
   void stop() { simulation_->stop(); }
 
@@ -101,7 +101,7 @@ class LivePhysics {
  private:
   LivePhysics(std::unique_ptr<const PhysicsWorld> world, const Options& options);
   double follow_thread(TimeNs display_ns);
-  void await_step();
+  void hasten_step();
   bool poll(double time_s);
   void begin_history();
   void trace(const sim::Snapshot<PhysicsState>& snapshot);
@@ -110,7 +110,7 @@ class LivePhysics {
   Pace pace_;
   sim::HostClock host_;
   sim::StepClock* clock_;  // that paces the thread
-  double wait_share_ = 0.0;
+  bool hastens_ = false;
   std::unique_ptr<PhysicsSimulation> simulation_;
   std::optional<sim::SnapshotReader<PhysicsState>> reader_;  // of the thread's states
   MotionHistory history_;

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
+#include <cmath>
+#include <thread>
 #include <vector>
 
 #include "engine/sim/step_clock.hpp"
@@ -60,6 +63,72 @@ TEST(StepPacer, AClockThatGoesBackAsksForNothing) {
   EXPECT_EQ(pacer.take(0), 0);
   EXPECT_EQ(pacer.take(-kSecond), 0);
   EXPECT_EQ(pacer.take(kSecond + 4'166'667), 1);
+}
+
+TEST(StepPacer, AnEarlyStepIsTheNextOneAndIsNotAskedForAgain) {
+  StepPacer pacer(1000.0, 4, 0);
+  EXPECT_FALSE(pacer.take_early(300'000, 600'000));
+  EXPECT_TRUE(pacer.take_early(300'000, 1'000'000));
+  EXPECT_EQ(pacer.taken_ns(1, 0), 1'000'000);
+  EXPECT_FALSE(pacer.take_early(300'000, 1'000'000)) << "one step ahead at most";
+  EXPECT_EQ(pacer.take(1'000'000), 0);
+  EXPECT_EQ(pacer.take(2'000'000), 1);
+  EXPECT_EQ(pacer.taken_ns(1, 0), 2'000'000);
+  EXPECT_EQ(pacer.counts().steps, 2u);
+  EXPECT_EQ(pacer.counts().caught_up + pacer.counts().dropped, 0u);
+}
+
+// Two threads step; the steps are those of one.
+TEST(StepThread, HastenedStepsAreNeitherSkippedNorRunTwice) {
+  HostClock clock;
+  const TimeNs begun_ns = clock.now();
+  std::vector<TimeNs> due;
+  std::atomic<int> early{0};
+  StepPacer::Counts counts;
+  {
+    StepThread thread(clock, StepPacer(1000.0, 1000, begun_ns), [&](TimeNs due_ns) {
+      if (due_ns > clock.now()) ++early;
+      due.push_back(due_ns);
+    });
+    while (clock.now() < begun_ns + kSecond / 2) {
+      thread.hasten(1'000'000, kSecond);
+      std::this_thread::sleep_for(std::chrono::microseconds(700));
+    }
+    thread.stop();
+    counts = thread.counts();
+  }
+  EXPECT_GE(early, 50);
+  EXPECT_EQ(counts.dropped, 0u);
+  EXPECT_EQ(counts.steps, due.size());
+  for (std::size_t i = 0; i < due.size(); ++i)
+    ASSERT_EQ(due[i], begun_ns + static_cast<TimeNs>(i + 1) * 1'000'000);
+}
+
+TEST(StepThread, NoStepIsHastenedWhileTimeStandsOrStepsAreSlow) {
+  class Standing final : public StepClock {
+   public:
+    TimeNs now() override { return 0; }
+    void wait_until(TimeNs) override { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }
+    bool stands() override { return standing; }
+    std::atomic<bool> standing{true};
+  } clock;
+  std::atomic<int> steps{0};
+  StepThread thread(clock, StepPacer(1000.0, 4, 0), [&](TimeNs) {
+    ++steps;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  });
+  EXPECT_FALSE(thread.hasten(1'000'000, 1'000'000));
+  EXPECT_EQ(steps, 0);
+  clock.standing = false;
+  bool taken = false;  // the thread may hold the steps just now
+  for (int i = 0; i < 1000 && !taken; ++i) {
+    taken = thread.hasten(1'000'000, 1'000'000);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_TRUE(taken);
+  EXPECT_EQ(steps, 1);
+  EXPECT_FALSE(thread.hasten(10'000'000, 1'000'000)) << "the last step took longer";
+  EXPECT_EQ(steps, 1);
 }
 
 TEST(StepThread, RunsStepsAtTheirTimesOnASimulatedClock) {

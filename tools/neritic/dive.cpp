@@ -306,8 +306,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::stri
   NERITIC_TRY_STATUS(make_device(flags, scene, screen));
   NERITIC_TRY(const auto session, Session::create(*screen.device, std::move(scene)));
   NERITIC_TRY_STATUS(make_display(flags, camera, screen));
-  // A headset's frames begin when its runtime says, and are short.
-  if (physics && !screen.headset) physics->await_steps(LivePhysics::kPictureWait);
+  if (physics) physics->hasten_steps(true);
   std::unique_ptr<Devices> devices;
   if (physics && !replay) {
     NERITIC_TRY(devices, Devices::open(session->scene(), physics->world(), physics->inbox(),

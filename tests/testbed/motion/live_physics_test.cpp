@@ -2,6 +2,7 @@
 // where the clock says, between two steps and no farther than one from either.
 #include "testbed/motion/live_physics.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <thread>
 #include <utility>
@@ -112,6 +113,50 @@ TEST(LivePhysics, OnAClockThatAPersonStopsItStandsAndGoesOn) {
       (due() / 240.0 - stepped_s) / (1e-9 * static_cast<double>(now_ns() - fast_ns));
   EXPECT_GT(due(), 240.0 * (stepped_s + 0.4));
   EXPECT_GT(pace, 1.5);
+}
+
+// A command that came just before a picture begins is in the state that it shows; the steps are
+// those of the clock, one after another, none more.
+TEST(LivePhysics, AHastenedPictureShowsWhatJustCame) {
+  auto world = PhysicsWorld::create(drifting_scene()).value();
+  const auto live = LivePhysics::create(std::move(world), {.pace = LivePhysics::Pace::kClock});
+  live->hasten_steps(true);
+  const SourceId python = live->inbox().open("python").value();
+  const auto stream = live->world().streams().find("rov/wrench").value();
+  std::atomic<std::uint64_t> used{0}, step{0}, used_by{0};
+  std::vector<std::uint64_t> steps;
+  live->observe(
+      [&](const auto& snapshot) {
+        step = snapshot.step;
+        steps.push_back(snapshot.step);
+      },
+      [&](const Sample& sample) {
+        if (sample.header.source != python) return;
+        used = sample.header.sequence;
+        used_by = step + 1;
+      });
+  live->start();
+  const TimeNs begun_ns = now_ns();
+  int shown = 0;
+  VehicleWrench push_ahead;
+  push_ahead.wrench[0] = 10.0;
+  constexpr int kPictures = 200;
+  for (std::uint64_t i = 1; i <= kPictures; ++i) {
+    std::this_thread::sleep_for(std::chrono::microseconds(7300));  // at any time of a step
+    const TimeNs now = now_ns();
+    ASSERT_EQ(live->inbox().push({{stream, python, i, now, now}, push_ahead}),
+              SampleVerdict::kAccepted);
+    live->follow(now_ns(), 0.0);
+    shown += used == i && used_by <= live->shown_snapshot().step;
+  }
+  live->stop();
+  // The others came while a step ran on the thread.
+  EXPECT_GT(shown, kPictures * 8 / 10);
+  const auto counts = live->counts();
+  const double steps_s = static_cast<double>(counts.steps + counts.dropped) / 240.0;
+  EXPECT_NEAR(steps_s, 1e-9 * static_cast<double>(now_ns() - begun_ns), 2.0 / 240.0 + 0.01);
+  EXPECT_EQ(steps.size(), counts.steps + 1);
+  for (std::size_t i = 0; i < steps.size(); ++i) ASSERT_EQ(steps[i], i);
 }
 
 }  // namespace
