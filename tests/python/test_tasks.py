@@ -3,6 +3,7 @@ import math
 import os
 import re
 import shutil
+import sys
 import tempfile
 import unittest
 import unittest.mock
@@ -12,6 +13,7 @@ import experiment_tools  # noqa: F401
 
 import numpy as np
 
+import runner
 import scenario
 
 
@@ -119,6 +121,10 @@ class Tasks(unittest.TestCase):
 
     def run_of(self, plan, bpm=10.0, hz=20):
         """Its measures in a world that has a diver's body alone."""
+        measures, self.series = plan.kind.run(plan.settings, 1, self.tools(bpm, hz))
+        return measures
+
+    def tools(self, bpm=10.0, hz=20):
         world = SimpleNamespace(time=0.0, step=0, step_s=1.0 / hz, agents={"rov": None, "diver": None}, close=lambda: None)
         seen = {"diver/motion": SimpleNamespace(breath_bpm=bpm, heart_bpm=6 * bpm)}
 
@@ -128,9 +134,7 @@ class Tasks(unittest.TestCase):
             return seen
         world.observe, world.tick = lambda: seen, tick
         world.truth = lambda name: SimpleNamespace(position=np.array([2.0 * (name == "rov"), 0.0, -10.0]))
-        tools = SimpleNamespace(python=lambda: SimpleNamespace(open=lambda *_, **__: world))
-        measures, self.series = plan.kind.run(plan.settings, 1, tools)
-        return measures
+        return SimpleNamespace(python=lambda: SimpleNamespace(open=lambda *_, **__: world))
 
     def test_the_time_of_a_run_and_of_its_stages_counts_the_held_seconds(self):
         stages = "".join(f'[[stages]]\nname = "{n}"\nuntil = "stage_time > 0.99"\nheld_s = {held}\n' for n, held in (("a", 2.0), ("b", 0.5)))
@@ -247,6 +251,79 @@ wanted_m = "3 - share - 0.01 * heart(diver)"
                 self.run_of(self.made(stages=stages, act=act, **both))
         with self.assertRaisesRegex(scenario.Failed, 'play.py: act told "close"; accepted: far'):
             self.run_of(self.made(stages=stages, task='tells = ["far"]', player='return {"close": 1}'))
+
+    def lasts(self, plan, controllers):
+        """What the formula `told` is at the end of a run of each controller, one after another in this process."""
+        out = []
+        for seed, controller in controllers:
+            run = scenario.Run(0, {}, seed, plan.settings | {"controller": controller})
+            with tempfile.TemporaryDirectory() as scratch:
+                tools = self.tools()
+                with unittest.mock.patch.object(runner, "Tools", lambda *_: tools):
+                    result = runner._one(plan.kind.run, run, "none", os.path.join(scratch, "run"))
+            self.assertIsNone(result["failure"])
+            out.append(result["measures"]["gain"])
+        return out
+
+    def write(self, name, text):
+        path = os.path.join(self.folder, name)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w") as file:
+            file.write(text)
+        return path
+
+    GAIN = 'says = ["gain"]\ntells = ["gain_told"]', '[[stages]]\nname = "near"\nuntil = "time > 1"\n[[measures]]\nname = "gain"\nof = "gain_told"\nstatistic = "last"\n'
+    HELPED = ("import dataclasses\nimport helper\nfrom parts import part\n\n@dataclasses.dataclass\nclass Controller:\n    world: object\n"
+              "    settings: 'dict'\n    seed: int\n\n    def act(self, obs, stage):\n        import late\n"
+              "        return {'gain': helper.gain() + 1000 * part.N + 10000 * late.N}\n")
+
+    def test_a_controllers_modules_are_its_own_and_new_in_each_run(self):
+        plan = self.made(self.GAIN[0], self.GAIN[1], player="return {'gain_told': told.get('gain', 0)}")
+        files = []
+        for folder, gain in (("a", 100), ("b", 200)):
+            # One counts its runs; the names of the others are modules of the experiment's tools or packages without __init__.py.
+            self.write(f"{folder}/helper.py", f"import places\nCALLS = []\n\ndef gain():\n    CALLS.append(0)\n    return {gain} + min(len(CALLS), 2) + places.N\n")
+            self.write(f"{folder}/places.py", f"N = {gain // 10}")
+            self.write(f"{folder}/parts/part.py", f"N = {gain // 100}")
+            self.write(f"{folder}/late.py", f"N = {gain // 100}")
+            files.append(self.write(f"{folder}/ctl.py", self.HELPED))
+        a, b = files
+        path, names = list(sys.path), set(sys.modules)
+        self.assertEqual(self.lasts(plan, [(1, a), (2, b), (3, a), (4, b)]), [11112.0, 22222.0, 11112.0, 22222.0])
+        self.assertEqual(sys.path, path)
+        self.assertFalse({"helper", "parts", "parts.part", "late", "neritic_controller"} & (set(sys.modules) - names))
+        import places
+        self.assertEqual(os.path.dirname(places.__file__), os.path.realpath(experiment_tools.TOOLS))
+
+    def test_a_player_and_a_controller_have_each_their_helper(self):
+        plan = self.made(self.GAIN[0], self.GAIN[1], player="import helper; return {'gain_told': helper.N * told.get('gain', 0)}")
+        self.write("helper.py", "N = 7")
+        self.write("c/helper.py", "N = 3")
+        other = self.write("c/ctl.py", "import helper\n\n\nclass Controller:\n    def __init__(self, *_):\n        pass\n\n"
+                                       "    def act(self, obs, stage):\n        import helper as late\n        return {'gain': helper.N * late.N}\n")
+        self.assertEqual(self.lasts(plan, [(1, other)]), [63.0])
+        # Beside each other they have one.
+        both = self.write("both.py", "import helper\n\n\nclass Controller:\n    def __init__(self, *_):\n        pass\n\n"
+                                     "    def act(self, obs, stage):\n        helper.N += 1\n        return {'gain': 1}\n")
+        self.assertEqual(self.lasts(plan, [(1, both), (1, both)]), [27.0, 27.0])
+
+    def test_common_generators_draw_by_the_seed(self):
+        plan = self.made(self.GAIN[0], self.GAIN[1], player="return {'gain_told': told.get('gain', 0)}")
+        own = self.write("r/ctl.py", "import random\nimport numpy as np\n\n\nclass Controller:\n    def __init__(self, *_):\n"
+                                     "        self.x = random.random() + 10 * int(1e6 * np.random.random())\n\n"
+                                     "    def act(self, obs, stage):\n        return {'gain': self.x}\n")
+        found = self.lasts(plan, [(1, own), (2, own), (1, own), (2 ** 63 - 1, own)])
+        self.assertEqual(found[0], found[2])
+        self.assertEqual(len(set(found)), 3)
+
+    def test_a_helper_that_python_would_not_import_is_refused(self):
+        plan = self.made()
+        text = "import random\n\n\nclass Controller:\n    def act(self, obs, stage):\n        pass\n"
+        plan.kind.check(plan.settings | {"controller": self.write("q/ctl.py", text)})
+        self.write("r/random.py", "")
+        own = self.write("r/ctl.py", text)
+        with self.assertRaisesRegex(scenario.Refused, "random.py: found a module of a name that Python or neritic has; accepted: another name"):
+            plan.kind.check(plan.settings | {"controller": own})
 
     def test_what_is_read_is_text(self):
         stages = '[[stages]]\nname = "near"\nuntil = "time > 1"\n[[measures]]\nname = "m"\nof = "time"\n'

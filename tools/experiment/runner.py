@@ -12,6 +12,7 @@ import math
 import multiprocessing
 import multiprocessing.connection
 import os
+import random
 import resource
 import shutil
 import signal
@@ -19,6 +20,8 @@ import sys
 import tempfile
 import time
 import traceback
+
+import numpy as np
 
 import endings
 import files_read
@@ -47,6 +50,7 @@ def _one(do, run, program, folder, out=""):
     measures, series, absent = {}, {}, {}
     try:
         os.mkdir(folder)
+        _seed_common(run.seed)
         measures, series = do(run.settings, run.seed, Tools(program, folder, out))
         failure, absent = measures.pop("failure", None), measures.pop("absent", {})
     except Failed as error:
@@ -58,6 +62,12 @@ def _one(do, run, program, folder, out=""):
         failure = f"{type(error).__name__}: {error} ({os.path.basename(place.filename)}:{place.lineno})"
         failure = failure.replace(folder + os.sep, "")  # so that the same cause has the same words
     return {**_result(run, measures, failure, series, time.monotonic() - begun, _processor_s() - worked), "absent": absent}
+
+
+def _seed_common(seed):
+    """The generators that a process has one of, as random.random() and numpy.random.random() draw from: each run begins them anew."""
+    random.seed(seed)
+    np.random.seed(np.random.SeedSequence(seed).generate_state(8))
 
 
 def _result(run, measures, failure, series, wall_s, processor_s):

@@ -8,11 +8,10 @@ a dict of the numbers that it says to the player, or None. A player, a class Pla
 its act has a third argument, what the controller said last, and is called first; formulas may name the numbers that it returns.
 The controller has these as self.told, and the player itself as self.player.
 """
-import importlib.util
+import contextlib
 import math
 import numbers
 import os
-import sys
 
 import numpy as np
 
@@ -20,8 +19,9 @@ import files_read
 import task_figures
 from formulas import says_yes
 from instants import Instants
+from own_modules import OwnModules
 from scenario import Failed, Refused
-from task_file import TaskFile, check_class, check_participants
+from task_file import TaskFile, check_class, check_helpers, check_participants
 
 
 class Moment:
@@ -137,6 +137,7 @@ class Task(TaskFile):
         for file, name in ((self.player, "Player"), (path, "Controller")):
             if file:
                 check_class(file, name)
+                check_helpers(file)
 
     def _controller_of(self, settings):
         """Its file; None is the null robot."""
@@ -147,23 +148,25 @@ class Task(TaskFile):
         missing = [n for n in self.participants if n not in world.agents]
         if missing:
             raise Failed(f"{self.scene}: found no participant {missing[0]}; accepted: {', '.join(world.agents)}")
-        player = _controller(self.player, "Player")(world, settings, seed) if self.player else None
-        path = self._controller_of(settings)
-        controller = _controller(path)(world, settings, seed) if path else Null(world, settings, seed)
-        controller.player = player
+        path, modules = self._controller_of(settings), {}
+        player = _Actor(self.player, "Player", modules, world, settings, seed) if self.player else None
+        controller = _Actor(path, "Controller", modules, world, settings, seed)
+        controller.one.player = player and player.one
         fixed = {k: np.array(v) for k, v in self.places.items()}
         calls, begun = Instants(f"{self.path}: task.control_hz", self.control_hz, world.step_s), world.step
         course, observations, told, said = _Course(self), world.observe(), {}, {}
-        while world.time < self.seconds - 1e-9 and not course.is_over():
-            told = _told(self.player, player.act(observations, course.name(), said), self.tells) if player else {}
-            controller.told = dict(told)
-            said = _told(path, controller.act(observations, course.name()), self.says)
-            calls.take(world.step - begun)
-            observations = world.tick(calls.step - (world.step - begun))
-            moment = Moment(world, fixed, {**settings, **told, "time": world.time, "stage_time": world.time - course.begun}, observations)
-            for name, formula in self.numbers:
-                moment.define(name, formula)
-            course.see(moment, world.time)
+        with _all_here(modules if len(modules) == 1 else {}):  # then act() changes none of them
+            while world.time < self.seconds - 1e-9 and not course.is_over():
+                told = _told(self.player, player.act(observations, course.name(), said), self.tells) if player else {}
+                controller.one.told = dict(told)
+                said = _told(path, controller.act(observations, course.name()), self.says)
+                calls.take(world.step - begun)
+                with _all_here(modules):  # events call what a file gave them
+                    observations = world.tick(calls.step - (world.step - begun))
+                moment = Moment(world, fixed, {**settings, **told, "time": world.time, "stage_time": world.time - course.begun}, observations)
+                for name, formula in self.numbers:
+                    moment.define(name, formula)
+                course.see(moment, world.time)
         measures = course.measures(1.0 / self.control_hz)
         world.close()
         stages = course.series["stage"]
@@ -174,6 +177,14 @@ class Task(TaskFile):
 
     def figures(self, scenario, results, style):
         return task_figures.figures(self, scenario, results, style)
+
+
+def _all_here(modules):
+    """The imports of these files together."""
+    stack = contextlib.ExitStack()
+    for one in modules.values():
+        stack.enter_context(one.here())
+    return stack
 
 
 class Null:
@@ -200,18 +211,29 @@ def _told(path, told, accepted):
     return dict(told)
 
 
-def _controller(path, name="Controller"):
-    if not os.path.isfile(path):
-        raise Failed(f"{path}: found no such file; accepted: baseline, null, or a controller's .py")
-    folder = os.path.dirname(os.path.abspath(path))
-    if folder not in sys.path:
-        sys.path.insert(0, folder)  # for what lies beside it
-    spec = importlib.util.spec_from_file_location("neritic_controller", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    if not hasattr(module, name):
-        raise Failed(f"{path}: found no class {name}; accepted: one with act(observations, stage)")
-    return getattr(module, name)
+class _Actor:
+    """A run's controller or player, whose imports are its own; without a file the null robot."""
+
+    def __init__(self, path, name, modules, world, settings, seed):
+        """modules: the run's OwnModules by folder. Files of one folder have theirs in common."""
+        self._modules, made = None, Null
+        if path:
+            if not os.path.isfile(path):
+                raise Failed(f"{path}: found no such file; accepted: baseline, null, or a controller's .py")
+            folder = os.path.dirname(os.path.realpath(path))
+            self._modules = modules.setdefault(folder, OwnModules(folder))
+            made = getattr(self._modules.load(path, f"neritic_{name.lower()}"), name, None)
+            if made is None:
+                raise Failed(f"{path}: found no class {name}; accepted: one with act(observations, stage)")
+        with self.here():
+            self.one = made(world, settings, seed)
+
+    def here(self):
+        return self._modules.here() if self._modules else contextlib.nullcontext()
+
+    def act(self, *seen):
+        with self.here():
+            return self.one.act(*seen)
 
 
 def _statistic(name, values, step_s):

@@ -4,7 +4,9 @@ import keyword
 import os
 import re
 
+import files_read
 from formulas import Formula
+from own_modules import COMMON
 from scenario import Refused, Setting, check_keys, read, text_of, _number, _word_of
 
 STATISTICS = ("last", "first", "mean", "rms", "min", "max", "ever", "share", "duration")
@@ -231,6 +233,15 @@ def check_class(path, name):
     plain = [n for n in bound if isinstance(n, ast.ClassDef) and not n.bases and not n.decorator_list]
     if len(plain) == len(bound) and not any(getattr(part, "name", "") == "act" for n in plain for part in n.body):
         raise Refused(f"{path}: found a class {name} without act; accepted: a class {name} with act()")
+
+
+def check_helpers(path):
+    """Refuses a module beside this file that it imports in vain: the name is another module's."""
+    folder = os.path.dirname(os.path.realpath(path))
+    for file in files_read.of_module(path)[1:]:
+        place, name = os.path.split(file.removesuffix("/__init__.py"))
+        if place == folder and file.endswith(".py") and name.removesuffix(".py") in COMMON:
+            raise Refused(f"{file}: found a module of a name that Python or neritic has; accepted: another name")
 
 
 def _binds(node, name):
