@@ -55,9 +55,48 @@ class Boxes(unittest.TestCase):
         self.assertEqual((name, box), (1, (22, 12, 20, 8)))
         self.assertEqual(looking.boxes_of("rcnn", {**out, "labels": [5]}, 2, 64), [])
         self.assertEqual(looking.boxes_of("rcnn", {"boxes": np.zeros((0, 4)), "labels": [], "scores": []}, 2, 64), [])
-        for wrong in ({"labels": [0.6], "scores": [1.0]}, {"scores": [1.5]}, {"boxes": [1, 2, 3]}):  # as where two are exchanged
+        for wrong in ({"labels": [0.6], "scores": [1.0]}, {"boxes": [1, 2, 3]}):  # as where two are exchanged
             with self.assertRaisesRegex(Failed, "accepted: n x 4, n whole numbers"):
                 looking.boxes_of("rcnn", {**out, **wrong}, 2, 64)
+
+    def test_confidences_that_are_no_shares_are_refused_and_logits_made_shares(self):
+        logit = math.log(0.8 / 0.2)
+        outputs = {"yolo5": lambda a, b: [[[32, 16, 20, 8, b, -9.0, a]]], "yolo8": lambda a, b: [[[32], [16], [20], [8], [-9.0], [a]]],
+                   "ssd": lambda a, b: [[[[0, 1, a, 0.1, 0.1, 0.2, 0.2]]]],
+                   "rcnn": lambda a, b: {"boxes": [[1, 2, 3, 4]], "labels": [1], "scores": [a]}}
+        for kind, made in outputs.items():
+            def found(*values, logits=False):
+                out = made(*values)
+                return looking.boxes_of(kind, out if kind == "rcnn" else np.array(out, np.float32), 2, 64, logits)
+            for wrong in (logit, -3.0):
+                with self.assertRaisesRegex(Failed, 'accepted: shares in .*softmax or sigmoid; "outputs_are": "logits"'):
+                    found(wrong, 0.5)
+            for wrong in (math.nan, math.inf):
+                for logits in (False, True):
+                    with self.assertRaisesRegex(Failed, "1 are no number or infinite"):
+                        found(wrong, 0.5, logits=logits)
+            (name, sure, _), = found(logit, 0.0, logits=True)
+            self.assertEqual(name, 1)
+            self.assertAlmostEqual(sure, 0.4 if kind == "yolo5" else 0.8, 5)
+        nan = {"yolo8": [[[math.nan], [16], [20], [8], [0.1], [0.8]]], "ssd": [[[[0, 1, 0.5, math.nan, 0.1, 0.2, 0.2]]]]}
+        for kind, out in nan.items():
+            with self.assertRaisesRegex(Failed, "no number"):
+                looking.boxes_of(kind, np.array(out), 2, 64)
+        self.assertEqual(looking.boxes_of("ssd", np.array([[[[-1, 0, 0, 0, 0, 0, 0.0]]]]), 2, 64), [])
+        for out, words in ((np.zeros((1, 1, 1, 6)), "rows of 7"), (np.array([[[[0, 0.5, 0.5, 0, 0, 0.1, 0.1]]]]), "no whole number")):
+            with self.assertRaisesRegex(Failed, words):
+                looking.boxes_of("ssd", out, 2, 64)
+
+    def test_a_classifiers_numbers_are_shares_or_said_to_be_logits(self):
+        logits = np.array([[4.0, -1.0, 0.5]])
+        whole = np.exp(logits[0]) / np.exp(logits[0]).sum()
+        np.testing.assert_allclose(looking.shares_of(logits, 3, logits=True), whole, atol=1e-12)
+        np.testing.assert_allclose(looking.shares_of(whole, 3), whole, atol=1e-12)
+        np.testing.assert_allclose(looking.shares_of(1000 * logits, 3, logits=True), [1, 0, 0], atol=1e-12)
+        for out, words in ((logits, "found shares from -1 to 4; accepted: shares in"), ([0.9, 0.1, 0.1], "sum is 1.1; accepted: 1, as after softmax"),
+                           ([math.nan, 0.5, 0.5], "no number"), ([0.5, 0.5], "2 numbers; accepted: a classifier of 3")):
+            with self.assertRaisesRegex(Failed, words):
+                looking.shares_of(out, 3)
 
     def test_rows_of_another_width_are_told(self):
         with self.assertRaisesRegex(Failed, "rows of 6 numbers; accepted: 7 for 2 classes of yolo5"):
@@ -402,6 +441,25 @@ class Looking(unittest.TestCase):
                 looking.check(self.exported(folder, "bad", ["labels", "boxes", "scores"], {}), 3)
 
     @unittest.skipIf(torch is None, "no PyTorch here")
+    def test_an_export_without_softmax_is_refused_unless_it_says_so(self):
+        net = torch.nn.Sequential(torch.nn.AvgPool2d(64), torch.nn.Flatten(1), torch.nn.Linear(3, 2))
+        torch.nn.init.zeros_(net[2].weight)
+        net[2].bias.data[:] = torch.tensor([1.0, 4.0])
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "net.onnx")
+            torch.onnx.export(net.eval(), torch.zeros(1, 3, 64, 64), path, opset_version=11)
+            for more, words in (({}, "net.onnx: found shares from 1 to 4; accepted: .*softmax"), ({"outputs_are": "logits"}, None)):
+                with open(os.path.join(folder, "net.json"), "w") as file:
+                    json.dump({"kind": "classifier", "classes": ["nothing", "shark"], "side": 64, "normalise": "none", **more}, file)
+                if words:
+                    with self.assertRaisesRegex(Refused, words):
+                        looking.check(path, 3)
+            self.assertEqual(looking.check(path, 3)[0], "classifier")
+            (name, sure, _), = looking.Detector(path).look(np.zeros((64, 64, 3), np.uint8))
+            self.assertEqual(name, "shark")
+            self.assertAlmostEqual(sure, 1 / (1 + math.exp(-3)), 5)
+
+    @unittest.skipIf(torch is None, "no PyTorch here")
     def test_a_layer_that_opencv_lacks_is_named(self):
         class Chosen(torch.nn.Module):
             def forward(self, x):
@@ -442,6 +500,7 @@ class Looking(unittest.TestCase):
             refused("found a classifier of 5 numbers; accepted: a classifier of 2", classes=["shark", "nothing"])
             refused(r"accepted: (one with a class shark|a classifier of nothing, diver)", classes=["nothing", "diver", "rov", "whale", "fish"])
             refused("found channels 1; accepted: 3 here", channels=1)
+            refused("found outputs_are 'numbers'; accepted: shares, logits", outputs_are="numbers")
             refused("found classes 'shark'", classes="shark")
             shark.check(settings | {"detector": "shipped"})
 

@@ -6,7 +6,8 @@ and right exchanged and answers the mean, for twice the time. With "with": ["OTH
 look too. With "looks": N it is meant for N pictures of the same thing: [N, row, column(, channel)]. The mean of all counts, to
 the power "power", which makes it as sure as it is right. A classifier gives a share to each class of a whole crop. YOLO's raw output and
 SSD's rows (image, class, confidence, box) give boxes; so do three outputs, "rcnn": boxes [n, 4] as left, top, right, bottom in
-pixels of the input, labels [n] and scores [n], in the order that "outputs" names. Overlapping boxes are thinned; the classes
+pixels of the input, labels [n] and scores [n], in the order that "outputs" names. With "outputs_are": "logits" (not "shares", the
+default) softmax of a classifier's numbers, and the logistic function of other kinds' confidences, give the shares. Overlapping boxes are thinned; the classes
 "nothing" and "background" are no finding. Pictures are [row, column(, channel)]
 as the cameras and sonars give them, RGB.
 """
@@ -23,11 +24,13 @@ import numpy as np
 import onnx_network
 from scenario import Failed, Refused, check_keys
 
+SHARES_OFF = 1e-3  # how far numbers that are shares may be from [0, 1], and their sum from 1
+LOGITS_OF_SHARES = 'accepted: shares in [0, 1], as after softmax or sigmoid; "outputs_are": "logits" where the file ends before these'
 KINDS = ("classifier", "yolo5", "yolo8", "ssd", "rcnn")
 OUTPUTS = ("boxes", "labels", "scores")
 NO_FINDING = ("nothing", "background")
 # made_by, share_of_crops_to_choose_by and note are for readers.
-KEYS = ("kind", "classes", "side", "channels", "normalise", "mirror", "with", "looks", "power", "outputs", "made_by",
+KEYS = ("kind", "classes", "side", "channels", "normalise", "mirror", "with", "looks", "power", "outputs", "outputs_are", "made_by",
         "share_of_crops_to_choose_by", "note")
 CHECK_S = 120.0  # in which a network must have looked once
 FORKS = multiprocessing.get_context("fork")
@@ -102,6 +105,9 @@ class Detector:
         if self.normalise not in ("crop", "none") or not isinstance(self.mirror, bool) or type(self.looks) is not int or not 1 <= self.looks <= 64:
             raise Refused(f"{about}: found normalise {self.normalise!r}, mirror {self.mirror!r}, looks {self.looks!r}; "
                           "accepted: crop, none; true, false; a whole number in [1, 64]")
+        self.logits = self.about.get("outputs_are", "shares") == "logits"
+        if not self.logits and self.about.get("outputs_are", "shares") != "shares":
+            raise Refused(f"{about}: found outputs_are {self.about['outputs_are']!r}; accepted: shares, logits")
         self.power, others = self.about.get("power", 1.0), _others(path, self.about)
         if isinstance(self.power, bool) or not isinstance(self.power, (int, float)) or not 0.1 <= self.power <= 10:
             raise Refused(f"{about}: found power {self.power!r}; accepted: a number in [0.1, 10]")
@@ -150,12 +156,10 @@ class Detector:
         return out / out.sum()
 
     def _own_shares(self, pixels):
-        out = self.forward(pixels).ravel()
-        if self.mirror:
-            out = 0.5 * (out + self.forward(np.ascontiguousarray(pixels[:, ::-1])).ravel())
-        if self.kind != "classifier" or out.size != len(self.classes):
-            raise Failed(f"detector: found a {self.kind} of {out.size} numbers; accepted: a classifier of {len(self.classes)}")
-        return out
+        if self.kind != "classifier":
+            raise Failed(f"detector: found a {self.kind}; accepted: a classifier")
+        sides = [pixels, np.ascontiguousarray(pixels[:, ::-1])] if self.mirror else [pixels]
+        return sum(shares_of(self.forward(side), len(self.classes), self.logits) for side in sides) / len(sides)
 
     def look(self, pixels, least=0.25, overlap=0.45):
         """[(class, confidence, (left, top, width, height) in pixels of the picture)], surest first; never "nothing"."""
@@ -165,7 +169,7 @@ class Detector:
             best = int(shares.argmax())
             name = self.classes[best]
             return [] if name in NO_FINDING or shares[best] < least else [(name, float(shares[best]), (0, 0, wide, high))]
-        rows = boxes_of(self.kind, self.forward(pixels), len(self.classes), self.side)
+        rows = boxes_of(self.kind, self.forward(pixels), len(self.classes), self.side, self.logits)
         rows = [r for r in rows if r[1] >= least and self.classes[r[0]] not in NO_FINDING]
         chosen = self._cv2.dnn.NMSBoxes([list(r[2]) for r in rows], [r[1] for r in rows], least, overlap) if rows else []
         scale = (wide / self.side, high / self.side) * 2
@@ -173,28 +177,71 @@ class Detector:
                 for i in np.array(chosen).ravel()]
 
 
-def boxes_of(kind, out, classes, side):
+def shares_of(out, classes, logits=False):
+    """The share of each class, of a classifier's output: [classes], in [0, 1]."""
+    out = np.asarray(out).ravel()
+    if out.size != classes:
+        raise Failed(f"detector: found a classifier of {out.size} numbers; accepted: a classifier of {classes}")
+    if logits:
+        _check_finite("numbers", out)
+        raised = np.exp(out - out.max())
+        return raised / raised.sum()
+    out = _confidences("shares", out)
+    if abs(out.sum() - 1) > SHARES_OFF:
+        raise Failed(f"detector: found shares whose sum is {out.sum():.4g}; accepted: 1, as after softmax; \"outputs_are\": \"logits\" where "
+                     "the file ends before that")
+    return out
+
+
+def _check_finite(what, values):
+    if not np.isfinite(values).all():
+        raise Failed(f"detector: found {what} of which {np.count_nonzero(~np.isfinite(values))} are no number or infinite; accepted: numbers")
+
+
+def _confidences(what, values, logits=False):
+    """These numbers in [0, 1]: of logits by the logistic function."""
+    values = np.asarray(values)
+    _check_finite(what, values)
+    if logits:
+        return 0.5 * (1 + np.tanh(0.5 * values))
+    if values.size and not -SHARES_OFF <= values.min() <= values.max() <= 1 + SHARES_OFF:
+        raise Failed(f"detector: found {what} from {values.min():.4g} to {values.max():.4g}; {LOGITS_OF_SHARES}")
+    return values.clip(0, 1)
+
+
+def boxes_of(kind, out, classes, side, logits=False):
     """[(class, confidence, (left, top, width, height) in pixels of the network's input)] of a raw output; of kind rcnn of
     {"boxes", "labels", "scores"}."""
     if kind == "rcnn":
         boxes, labels, scores = (np.asarray(out[k], float) for k in OUTPUTS)
         n = labels.size
-        if boxes.size != 4 * n or scores.size != n or not np.array_equal(labels, np.round(labels)) or not ((scores >= 0) & (scores <= 1)).all():
+        if boxes.size != 4 * n or scores.size != n or not np.array_equal(labels, np.round(labels)):
             raise Failed(f"detector: found boxes {boxes.shape}, labels {labels.shape}, scores {scores.shape}; accepted: n x 4, n whole "
                          "numbers, n in [0, 1], in the order that outputs names")
+        _check_finite("boxes", boxes)
+        scores = _confidences("scores", scores, logits)
         return [(int(k), float(s), (b[0], b[1], b[2] - b[0], b[3] - b[1]))
                 for b, k, s in zip(boxes.reshape(n, 4).tolist(), labels.ravel(), scores.ravel()) if 0 <= k < classes]
     if kind == "ssd":  # [1, 1, n, 7]: image, class, confidence, left, top, right, bottom as shares of the picture
-        rows = out.reshape(-1, 7)
-        return [(int(r[1]), float(r[2]), (r[3] * side, r[4] * side, (r[5] - r[3]) * side, (r[6] - r[4]) * side))
-                for r in rows.astype(float) if 0 <= int(r[1]) < classes]
+        if out.size % 7:
+            raise Failed(f"detector: found an output {out.shape}; accepted: rows of 7 numbers of ssd")
+        rows = out.reshape(-1, 7).astype(float)
+        rows = rows[~(rows[:, 0] < 0)]  # an image of -1 is the mark of an empty row
+        _check_finite("rows", rows)
+        if not np.array_equal(rows[:, 1], np.round(rows[:, 1])):
+            raise Failed("detector: found a class that is no whole number; accepted: rows of image, class, confidence, left, top, right, bottom")
+        sure = _confidences("confidences", rows[:, 2], logits)
+        return [(int(r[1]), float(s), (r[3] * side, r[4] * side, (r[5] - r[3]) * side, (r[6] - r[4]) * side))
+                for r, s in zip(rows, sure) if 0 <= r[1] < classes]
     rows = out.reshape(out.shape[-2:])
     if kind == "yolo8":  # [1, 4 + classes, n]: no objectness
         rows = rows.T
     head = 5 if kind == "yolo5" else 4
     if rows.shape[1] != head + classes:
         raise Failed(f"detector: found rows of {rows.shape[1]} numbers; accepted: {head + classes} for {classes} classes of {kind}")
-    share = rows[:, head:] * (rows[:, 4:5] if kind == "yolo5" else 1.0)
+    _check_finite("boxes", rows[:, :4])
+    sure = _confidences("confidences", rows[:, 4:], logits)
+    share = sure[:, 1:] * sure[:, :1] if kind == "yolo5" else sure
     best = share.argmax(axis=1)
     return [(int(b), float(s[b]), (float(r[0] - r[2] / 2), float(r[1] - r[3] / 2), float(r[2]), float(r[3])))
             for r, s, b in zip(rows, share, best)]
