@@ -129,25 +129,23 @@ double CaseField::number(double fallback, double least, double most) const {
 std::vector<double> CaseField::numbers() const {
   std::vector<double> out;
   if (!present()) return out;
-  bool good = value_->is_array();
-  if (good)
-    for (const nlohmann::json& item : *value_) {
-      good = good && item.is_number() && std::isfinite(item.get<double>());
-      if (good) out.push_back(item.get<double>());
+  if (!value_->is_array()) {
+    refuse("a list of numbers");
+    return out;
+  }
+  for (const nlohmann::json& item : *value_) {
+    if (!item.is_number() || !std::isfinite(item.get<double>())) {
+      refuse_entry(item, out.size(), "a list of numbers");
+      return {};
     }
-  if (good) return out;
-  refuse("a list of numbers");
-  return {};
+    out.push_back(item.get<double>());
+  }
+  return out;
 }
 
 std::vector<double> CaseField::numbers(std::size_t count) const {
   if (!present()) return {};
-  if (value_->is_array() && value_->size() == count) {
-    std::vector<double> out;
-    for (const nlohmann::json& item : *value_)
-      if (item.is_number() && std::isfinite(item.get<double>())) out.push_back(item.get<double>());
-    if (out.size() == count) return out;
-  }
+  if (value_->is_array() && value_->size() == count) return numbers();
   refuse(fmt::format("a list of {} numbers", count));
   return {};
 }
@@ -210,6 +208,13 @@ void CaseField::allow_with_texts(std::initializer_list<std::string_view> names) 
 
 void CaseField::refuse(std::string_view accepted) const {
   if (!file_->failed()) fail(found_accepted(found(), accepted));
+}
+
+void CaseField::refuse_entry(const nlohmann::json& entry, std::size_t i,
+                             std::string_view accepted) const {
+  if (file_->failed()) return;
+  fail(found_accepted(fmt::format("{} as entry {}", printable(json_text(entry, -1), 40), i),
+                      accepted));
 }
 
 std::string CaseField::found() const {

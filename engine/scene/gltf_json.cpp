@@ -149,13 +149,19 @@ int Field::index(std::size_t count, std::string_view what) const {
 
 bool Field::read_numbers(double* out, std::size_t count) const {
   if (!value_) return false;
-  bool good = value_->is_array() && value_->size() == count;
-  for (std::size_t i = 0; good && i < count; ++i) good = (*value_)[i].is_number();
-  if (!good) {
-    refuse(found(), fmt::format("a list of {} numbers", count));
+  const std::string accepted = fmt::format("a list of {} numbers", count);
+  if (!value_->is_array() || value_->size() != count) {
+    refuse(found(), accepted);
     return false;
   }
-  for (std::size_t i = 0; i < count; ++i) out[i] = (*value_)[i].get<double>();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Json& entry = (*value_)[i];
+    if (!entry.is_number()) {
+      refuse(fmt::format("{} as entry {}", one_line(json_text(entry, -1), 40), i), accepted);
+      return false;
+    }
+    out[i] = entry.get<double>();
+  }
   return true;
 }
 
@@ -168,7 +174,10 @@ std::string Field::path() const {
 std::string Field::found() const {
   if (!value_) return "nothing";
   if (value_->is_object()) return "an object";
-  if (value_->is_array()) return fmt::format("an array of {}", value_->size());
+  if (value_->is_array()) {
+    std::string text = json_text(*value_, -1);
+    return text.size() <= 60 ? one_line(text, 60) : fmt::format("an array of {}", value_->size());
+  }
   if (value_->is_string()) return "\"" + one_line(value_->get<std::string>(), 40) + "\"";
   return one_line(json_text(*value_, -1), 40);
 }

@@ -9,7 +9,7 @@
 namespace neritic::testbed {
 namespace {
 
-constexpr double kAllOfAPicture = 0.99;
+constexpr double kMostOfAPicture = 0.9;
 
 struct Span {
   double min_m = std::numeric_limits<double>::infinity(), max_m = 0.0;
@@ -109,10 +109,16 @@ std::optional<Vec3> way_out(const scene::Scene& scene, const scene::Mount& mount
   return at + (along_m + kClear_m) * ahead;
 }
 
+// own: of the pixels that see anything, seen.
 std::string behind_carrier(const scene::Scene& scene, const std::string& name,
-                           const scene::Mount& mount, const Span& own) {
-  std::string line = fmt::format("{}: sees only its own carrier {}, {:.2f} to {:.2f} m away; ",
-                                 name, scene.objects[mount.object].name, own.min_m, own.max_m);
+                           const scene::Mount& mount, const Span& own, std::size_t seen) {
+  std::string line =
+      fmt::format("{}: sees {} its own carrier {}", name,
+                  own.pixels == seen ? "only" : "little but", scene.objects[mount.object].name);
+  if (own.pixels < seen)
+    line += fmt::format(" ({:.3g} %)",
+                        100.0 * static_cast<double>(own.pixels) / static_cast<double>(seen));
+  line += fmt::format(", {:.2f} to {:.2f} m away; ", own.min_m, own.max_m);
   if (const auto out = way_out(scene, mount))
     return line + fmt::format("position_m = [{:.2f}, {:.2f}, {:.2f}] is before its hull", out->x,
                               out->y, out->z);
@@ -135,8 +141,8 @@ std::optional<std::string> blindness(const scene::Scene& scene, const scene::Cam
   if (!anything)
     return fmt::format("camera {}: black, since no opaque surface is in its view: turn or move it",
                        camera.name);
-  if (seen.own.pixels < kAllOfAPicture * seen.pixels || seen.own.pixels == 0) return {};
-  return behind_carrier(scene, "camera " + camera.name, camera.mount, seen.own);
+  if (seen.own.pixels < kMostOfAPicture * seen.pixels || seen.own.pixels == 0) return {};
+  return behind_carrier(scene, "camera " + camera.name, camera.mount, seen.own, seen.pixels);
 }
 
 std::optional<std::string> blindness(const scene::Scene& scene, const scene::Sonar& sonar,
@@ -155,7 +161,8 @@ std::optional<std::string> blindness(const scene::Scene& scene, const scene::Son
   if (seen.within.pixels > 0) return {};
   const bool others = seen.nearer.pixels > 0 || seen.farther.pixels > 0;
   if (seen.own.pixels > 0 && (!others || 2 * seen.own.pixels > seen.pixels))
-    return behind_carrier(scene, name, sonar.mount, seen.own);
+    return behind_carrier(scene, name, sonar.mount, seen.own,
+                          seen.own.pixels + seen.nearer.pixels + seen.farther.pixels);
   if (hears) return {};  // what is too small for these pixels, or has no class
   const std::string limits =
       fmt::format("range_m = [{:g}, {:g}]", sonar.range_min_m, sonar.range_max_m);

@@ -34,9 +34,9 @@ std::string not_promised(const scene::Scene& scene, const PhysicsWorld& world) {
       world.vehicles(), [](const PhysicsVehicle& vehicle) { return bool(vehicle.mission); });
   std::vector<std::string> reasons;
   if (pulses && asked_m < rov::kTurnedPulse_m)
-    reasons.push_back(
-        fmt::format("a thruster's pulse that is rounded to the other microsecond, up to {:g} m",
-                    rov::kTurnedPulse_m));
+    reasons.push_back(fmt::format(
+        "a thruster's pulse that is rounded to the other microsecond, up to {:g} m after 20 s",
+        rov::kTurnedPulse_m));
   if (asked_m < leaves_m)
     reasons.push_back(fmt::format(
         "a waypoint that is left a control period sooner or later, up to {:.2g} m", leaves_m));

@@ -32,6 +32,13 @@ TEST(GltfLoader, FaultsAreNamedWithTheirPlaceInTheFile) {
          [](Builder& b) { b.json["nodes"][0]["mesh"] = 7; });
   broken("nodes[0].mesh: found -1", [](Builder& b) { b.json["nodes"][0]["mesh"] = -1; });
   broken("nodes[0].mesh: found \"a\"", [](Builder& b) { b.json["nodes"][0]["mesh"] = "a"; });
+  broken("nodes[0].rotation: found \"a\" as entry 2; accepted: a list of 4 numbers",
+         [](Builder& b) {
+           b.json["nodes"][0]["rotation"] = {0, 0, "a", 1};
+         });
+  broken("nodes[0].scale: found [1,2]; accepted: a list of 3 numbers", [](Builder& b) {
+    b.json["nodes"][0]["scale"] = {1, 2};
+  });
   broken("accessors[0]: found 4000000000 elements",
          [](Builder& b) { b.json["accessors"][0]["count"] = 4000000000u; });
   broken("accepted: less, for a file of this size", [](Builder& b) {

@@ -199,10 +199,13 @@ TEST_F(RenderData, ANameThatIsNoneOrThatNothingGivesIsRefusedWithTheNames) {
   EXPECT_EQ(said({"--only", "color,deph"}),
             "--only: found 'deph'; accepted: one or more of color, depth, normals, labels, "
             "instances, motion, sonar, coco, trajectory, linear, raw, boxes, kitti, panoptic");
-  EXPECT_EQ(said({"--only", "color", "--sensor", "ears"}),
-            "--only: found color; accepted: that with a camera");
+  EXPECT_EQ(
+      said({"--only", "color", "--sensor", "ears"}),
+      "--only: found color, and no camera to give it; accepted: a scene and a --sensor with a "
+      "camera, or data of sonars");
   EXPECT_EQ(said({"--only", "sonar", "--sensor", "eyes"}),
-            "--only: found sonar; accepted: that with a sonar");
+            "--only: found sonar, and no sonar to give it; accepted: a scene and a --sensor with a "
+            "sonar, or data of cameras");
   EXPECT_EQ(said({"--only", "color,raw"}),
             "--only: found 'raw'; accepted: that with a camera of sensor = { bayer = \"rggb\" }");
   EXPECT_EQ(said({"--only", "linear"}),

@@ -92,8 +92,11 @@ Result<Datasets> datasets_of(const RenderFlags& flags, const LoopSensors& sensor
     const bool given = one == kTrajectory || (alone.of_cameras() && !sensors.cameras.empty()) ||
                        (alone.of_sonars() && !sensors.sonars.empty());
     if (!given)
-      return refusal("--only", fmt::format("{}", name),
-                     alone.of_sonars() ? "that with a sonar" : "that with a camera");
+      return refusal(
+          "--only",
+          fmt::format("{}, and no {} to give it", name, alone.of_sonars() ? "sonar" : "camera"),
+          alone.of_sonars() ? "a scene and a --sensor with a sonar, or data of cameras"
+                            : "a scene and a --sensor with a camera, or data of sonars");
   }
   return datasets;
 }

@@ -88,6 +88,20 @@ TEST_F(Sight, InsideItsCarrierEverySensorSaysSoOnceAndShowsTheWayOut) {
   }
 }
 
+// Through a hull with gaps: a few per cent of the pixels see the sea.
+TEST_F(Sight, ACameraInTheShippedVehicleSeesLittleButIt) {
+  NERITIC_ASSERT_OK(scene::Scene scene,
+                    scene::load_scene(test::source_dir() / "tests/scenes/over_sand.toml"));
+  scene.sonars.clear();
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  scene.cameras[0].mount.pose.position_m = Vec3(0.0);
+  const auto lines = told(device(), scene, Capture{});
+  ASSERT_EQ(lines.size(), 1u) << ::testing::PrintToString(lines);
+  EXPECT_THAT(lines[0],
+              ::testing::AllOf(::testing::HasSubstr("sees little but its own carrier rov"),
+                               ::testing::HasSubstr("is before its hull")));
+}
+
 TEST_F(Sight, AtThePlaceThatTheLineNamesTheyAllSee) {
   scene::Scene scene = hull_in_a_room({0.0, 0.0, -0.22}, 3.0);
   scene.sonars.erase(scene.sonars.begin() + 3);  // a side-scan's sides lie beside the hull
