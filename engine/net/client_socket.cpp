@@ -37,6 +37,9 @@ ClientSocket::~ClientSocket() = default;
 Result<std::unique_ptr<ClientSocket>> ClientSocket::connect(const ClientSocketOptions& options) {
   constexpr int kQueued = 1000, kReconnect_ms = 100, kReconnectMost_ms = 2000;
   constexpr int kHeartbeat_ms = 5000, kDead_ms = 15000;
+  // A server in a crowd drops the first packet of connections. The kernel would send it again after
+  // 1, 3, 7 and 15 s; a new attempt begins at once.
+  constexpr int kConnect_ms = 2000;
   constexpr const char* kMonitor = "inproc://neritic.client.monitor";
   auto parts = std::make_unique<Parts>();
   parts->dealer.reset(zmq_socket(parts->context.get(), ZMQ_DEALER));
@@ -46,6 +49,7 @@ Result<std::unique_ptr<ClientSocket>> ClientSocket::connect(const ClientSocketOp
   set_option(socket, ZMQ_RCVHWM, kQueued);
   set_option(socket, ZMQ_RECONNECT_IVL, kReconnect_ms);
   set_option(socket, ZMQ_RECONNECT_IVL_MAX, kReconnectMost_ms);
+  set_option(socket, ZMQ_CONNECT_TIMEOUT, kConnect_ms);
   set_option(socket, ZMQ_HEARTBEAT_IVL, kHeartbeat_ms);
   set_option(socket, ZMQ_HEARTBEAT_TIMEOUT, kDead_ms);
   if (zmq_socket_monitor(socket, kMonitor,

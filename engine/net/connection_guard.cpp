@@ -43,13 +43,27 @@ void ConnectionGuard::accepted(int fd) {
   if (half_open_ > limits_.half_open || connections_.size() > limits_.connections) crowd_out();
 }
 
+// Those that sent nothing, and those that greeted, have half of the room each. A crowd of the first
+// does not cut a client between its greeting and its first message, which would be lost; a crowd of
+// the second does not cut one that is about to greet.
 void ConnectionGuard::crowd_out() {
-  Connection* eldest = nullptr;
-  for (auto& [fd, one] : connections_)
-    if (!one.heard && !one.cut && (!eldest || one.number < eldest->number)) eldest = &one;
-  if (!eldest) return;
+  Connection *silent = nullptr, *greeted = nullptr;
+  std::size_t silent_ones = 0;
+  for (auto& [fd, one] : connections_) {
+    if (one.heard || one.cut) continue;
+    if (!one.greeted) {
+      const auto so_far = bytes_so_far(one.own.get());
+      one.greeted = so_far && so_far->received > 0;
+    }
+    silent_ones += one.greeted ? 0 : 1;
+    Connection*& eldest = one.greeted ? greeted : silent;
+    if (!eldest || one.number < eldest->number) eldest = &one;
+  }
+  const bool silent_goes = silent && (!greeted || silent_ones > limits_.half_open / 2);
+  Connection* const goes = silent_goes ? silent : greeted;
+  if (!goes) return;
   ++counts_.crowded_out;
-  cut(*eldest);
+  cut(*goes);
 }
 
 void ConnectionGuard::closed(int fd) {

@@ -34,7 +34,8 @@ class ConnectionGuard {
 
   explicit ConnectionGuard(const GuardLimits& limits) : limits_(limits) {}
 
-  // Where there are too many, the eldest without a handshake is cut; if there is none, this one.
+  // Where there are too many, the eldest without a handshake is cut: of those that sent nothing, if
+  // these are more than half of half_open, else of the others.
   void accepted(int fd);
   void closed(int fd);
   // A whole message came from it; with the first its handshake is finished.
@@ -54,6 +55,7 @@ class ConnectionGuard {
     Descriptor own;
     std::uint64_t number = 0;  // rises: the eldest has the lowest
     bool heard = false, cut = false;
+    bool greeted = false;        // it sent something, at the last look of crowd_out()
     std::uint64_t received = 0;  // at its last whole message
     std::uint64_t sent = 0;      // by messages, since the start
   };

@@ -16,7 +16,9 @@ namespace {
 
 constexpr int kMessagesAtOnce = 256;  // of one serve()
 constexpr int kQueuedMessages = 64;   // of each client, each way; bytes are the guard's
-constexpr int kBacklog = 1024;        // connections that wait for the library
+// Connections that wait for the library: as many as the kernel allows (net.core.somaxconn, 4096),
+// since it drops the first packet of any more, and a client's next one comes seconds later.
+constexpr int kBacklog = 65535;
 constexpr int kHeartbeat_ms = 5000, kDead_ms = 15000;
 constexpr TimeNs kLook_ns = 100'000'000;  // between two looks of the guard
 constexpr const char* kMonitor = "inproc://neritic.monitor";

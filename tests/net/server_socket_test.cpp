@@ -100,8 +100,7 @@ std::string greeting() {
   return text + std::string("\x04", 1) + static_cast<char>(ready.size()) + ready;
 }
 // A stranger who has gone through the handshake.
-Descriptor greeted(const Address& to) {
-  Descriptor socket = stranger(to);
+void greet(const Descriptor& socket) {
   const std::string hello = greeting();
   EXPECT_EQ(send(socket.get(), hello.data(), hello.size(), 0), static_cast<ssize_t>(hello.size()));
   std::size_t got = 0;  // its greeting, and its word that it is ready
@@ -111,6 +110,10 @@ Descriptor greeted(const Address& to) {
     got += static_cast<std::size_t>(n);
   }
   EXPECT_GE(got, 64u + 30u);
+}
+Descriptor greeted(const Address& to) {
+  Descriptor socket = stranger(to);
+  greet(socket);
   return socket;
 }
 std::size_t resident_bytes() {
@@ -211,6 +214,33 @@ TEST(ServerSocket, TenThousandConnectionsThatSayNothingCrowdEachOtherOut) {
   EXPECT_LT(most, before + (64u << 20));
 #endif
   EXPECT_EQ(echo.socket->clients(), 2u);
+}
+
+// A client whose greeting came, and whose first message comes later, outlives a crowd that says
+// nothing; and one that is about to greet outlives a crowd of those that greeted.
+TEST(ServerSocket, ACrowdDoesNotCutAClientBetweenItsGreetingAndItsFirstMessage) {
+  for (const bool greets : {false, true}) {
+    SCOPED_TRACE(greets);
+    Echo echo;
+    const Descriptor first =
+        greets ? stranger(echo.socket->address()) : greeted(echo.socket->address());
+    if (greets) {
+      ASSERT_TRUE(echo.until([&] { return echo.socket->counts().connections.accepted == 1; }));
+    }
+    std::vector<Descriptor> crowd;
+    for (std::uint64_t i = 1; i <= 500; ++i) {
+      crowd.push_back(greets ? greeted(echo.socket->address()) : stranger(echo.socket->address()));
+      ASSERT_TRUE(echo.until([&] { return echo.socket->counts().connections.accepted == i + 1; }));
+    }
+    EXPECT_GT(echo.socket->counts().connections.crowded_out, 400u);
+    if (greets)
+      greet(first);
+    else
+      EXPECT_FALSE(ended(first));
+    const std::string hello("\0\x01x", 3);
+    ASSERT_EQ(send(first.get(), hello.data(), hello.size(), 0), static_cast<ssize_t>(hello.size()));
+    EXPECT_TRUE(echo.until([&] { return echo.socket->clients() == 1; }));
+  }
 }
 
 TEST(ServerSocket, AMessageWithoutAnEndIsCut) {
