@@ -136,16 +136,17 @@ class Remote(unittest.TestCase):
 
     def test_an_images_memory_is_used_again_when_nobody_has_it(self):
         buffers = neritic.remote._Buffers()
-        first = np.frombuffer(buffers.take(1000), np.uint8)
-        second = np.frombuffer(buffers.take(1000), np.uint8)
+        first, _ = buffers.take((10, 100), "<f4")
+        second, _ = buffers.take((10, 100), "<f4")
         self.assertFalse(np.shares_memory(first, second))
-        part, at = first.reshape(10, 100)[3:], first.ctypes.data
+        part, at = first[3:], first.ctypes.data
         del first
-        self.assertNotEqual(np.frombuffer(buffers.take(1000), np.uint8).ctypes.data, at)
+        self.assertNotEqual(buffers.take((10, 100), "<f4")[0].ctypes.data, at)
         del part
-        self.assertEqual(np.frombuffer(buffers.take(1000), np.uint8).ctypes.data, at)
-        self.assertEqual(len(buffers.take(999)), 999)
-        kept = [buffers.take(1000) for _ in range(100)]
+        again, data = buffers.take((10, 100), "<f4")
+        self.assertEqual((again.ctypes.data, data.ctypes.data, data.size), (at, at, 4000))
+        self.assertEqual(buffers.take((9, 111), "<u2")[0].dtype, np.uint16)
+        kept = [buffers.take((10, 100), "<f4")[0] for _ in range(100)]
         self.assertEqual(len({id(one) for one in kept}), 100)
 
     def test_a_long_tick_loses_no_reading(self):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from dataclasses import astuple, dataclass
-from typing import Any, Iterator, Mapping, Sequence, Union
+from typing import Any, Iterator, Mapping, NamedTuple, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,8 +52,7 @@ class Rows:
         return self._rows[place][1][first:first + count]
 
 
-@dataclass
-class Pixels:
+class Pixels(NamedTuple):
     """An image in memory of Python's own, with the interface of one of the C++ side."""
 
     pixels: NDArray[Any]

@@ -5,7 +5,7 @@ The messages are in testbed/server/PROTOCOL.md. Needs Debian's python3-zmq and p
 
 from __future__ import annotations
 
-import math
+import functools
 import mmap
 import os
 import re
@@ -31,20 +31,20 @@ _PROTOCOL = 1
 _STEPS, _WAIT_S = 100_000, 60.0
 # How long a call waits for a connection that was closed; a server that is no longer heard is gone.
 _AGAIN_S, _HEARTBEAT_MS, _DEAD_MS = 1.0, 5000, 15000
+# A connection that is not there by then is tried anew: a server in a crowd drops some.
+_CONNECT_MS = 2000
 # How often a call that waits looks whether another thread closes the connection.
 _LOOK_S = 0.05
-_UNUSED = 2  # references to what a list alone has, the counting call's own among them
+_UNUSED = 3  # references to an array that its pair alone has: its bytes' and the counting call's own among them
 _ROW = struct.Struct("<IIQqq")
+# Of an image, in the order of Pixels.
+_FACTS = ("stream", "sequence", "stamp_ns", "arrival_ns", "position", "orientation", "intrinsics", "range_m", "azimuth",
+          "elevation")
 _EVENT = struct.Struct("=Hi")  # of the library's monitor, in this machine's byte order
 
 
-def _image(facts: Mapping[str, Any], data: bytearray) -> Pixels:
-    """An image that came."""
-    height, width, channels = facts["shape"]
-    shape = (height, width) if channels == 1 else (height, width, channels)
-    return Pixels(np.frombuffer(data, np.dtype(facts["type"])).reshape(shape), facts["stream"], facts["sequence"],
-                  facts["stamp_ns"], facts["arrival_ns"], facts["position"], facts["orientation"], facts["intrinsics"],
-                  facts["range_m"], facts["azimuth"], facts["elevation"])
+# Of a word as "<f4", which costs microseconds to read.
+_dtype = functools.lru_cache(16)(np.dtype)
 
 
 class _Buffers:
@@ -53,14 +53,15 @@ class _Buffers:
     MOST = 16
 
     def __init__(self) -> None:
-        self._kept: list[bytearray] = []
+        self._kept: list[tuple[NDArray[Any], NDArray[np.uint8]]] = []
 
-    def take(self, size: int) -> bytearray:
-        """One of that size. It belongs to whoever keeps it."""
-        for i in range(len(self._kept)):
-            if len(self._kept[i]) == size and sys.getrefcount(self._kept[i]) == _UNUSED:
-                return self._kept[i]
-        self._kept.append(bytearray(size))
+    def take(self, shape: tuple[int, ...], kind: str) -> tuple[NDArray[Any], NDArray[np.uint8]]:
+        """An array and its bytes. The memory belongs to whoever keeps the array, or one of its memory."""
+        for both in self._kept:
+            if both[0].shape == shape and both[0].dtype == _dtype(kind) and sys.getrefcount(both[0]) == _UNUSED:
+                return both
+        array = np.empty(shape, _dtype(kind))
+        self._kept.append((array, array.reshape(-1).view(np.uint8)))
         if len(self._kept) > self.MOST:
             del self._kept[0]
         return self._kept[-1]
@@ -78,18 +79,18 @@ class _Ring:
         magic, self.token, self.capacity = struct.unpack_from("<8sQQ", self._map)
         if magic != b"NRTCRNG1" or self.capacity != len(self._map) - 4096:
             raise OSError("no memory of arrays")
+        self._bytes = np.frombuffer(self._map, np.uint8)
 
     def prepare(self) -> None:
         """Touches each page, which costs microseconds the first time, so that no image has to."""
-        np.frombuffer(self._map, np.uint8)[::mmap.PAGESIZE].max()
+        self._bytes[::mmap.PAGESIZE].max()
 
-    def read(self, position: int, to: bytearray) -> bool:
+    def read(self, position: int, to: NDArray[np.uint8]) -> bool:
         """Copies an array; False: it was overwritten meanwhile."""
         at = 4096 + position % self.capacity
-        if at + len(to) > len(self._map):
+        if at + to.size > self._bytes.size:
             return False
-        with memoryview(self._map) as whole_ring, memoryview(to) as data:
-            data[:] = whole_ring[at:at + len(to)]  # a bytearray's own assignment would copy twice
+        to[:] = self._bytes[at:at + to.size]
         claimed, = struct.unpack_from("<Q", self._map, 24)
         return claimed - position <= self.capacity
 
@@ -141,7 +142,7 @@ class Core:
         self._context = zmq.Context()
         way = self._socket = self._context.socket(zmq.DEALER)
         way.linger = 0
-        way.heartbeat_ivl, way.heartbeat_timeout = _HEARTBEAT_MS, _DEAD_MS
+        way.heartbeat_ivl, way.heartbeat_timeout, way.connect_timeout = _HEARTBEAT_MS, _DEAD_MS, _CONNECT_MS
         self._monitor = way.get_monitor_socket(zmq.EVENT_HANDSHAKE_SUCCEEDED | zmq.EVENT_DISCONNECTED)
         # Of the connection: whether it is there (None: it never was), and how often it was closed.
         self._there: Optional[bool] = None
@@ -289,13 +290,14 @@ class Core:
     def _bring(self, images: Sequence[Mapping[str, Any]], frames: list[bytes]) -> None:
         """The images of an answer, each in memory of this process."""
         for facts in images:
-            data = self._buffers.take(math.prod(facts["shape"]) * np.dtype(facts["type"]).itemsize)
+            height, width, channels = facts["shape"]
+            pixels, data = self._buffers.take((height, width) if channels == 1 else (height, width, channels), facts["type"])
             if "frame" in facts:
                 memoryview(data)[:] = frames[facts["frame"]]
             elif not self._ring or not self._ring.read(facts["shared"], data):
                 self._lost_here += 1
                 continue
-            self._images.append(_image(facts, data))
+            self._images.append(Pixels(pixels, *map(facts.__getitem__, _FACTS)))
 
     # A world's interface.
 

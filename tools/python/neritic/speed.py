@@ -5,6 +5,7 @@ core, and from a server of this machine, into an array; how many steps vectorise
 
 from __future__ import annotations
 
+import math
 import os
 import subprocess
 import sys
@@ -96,7 +97,7 @@ def _read_ms(world: World, take: str, rounds: int) -> list[float]:
         seen = world.tick(round(0.1 / world.step_s))
         begun = time.perf_counter()
         pixels = seen["rov_sonar/echoes"].pixels
-        if pixels.shape != (BINS, BINS) or not np.isfinite(pixels[0, 0] + pixels[-1, -1]):
+        if pixels.shape != (BINS, BINS) or not math.isfinite(pixels.item(0) + pixels.item(-1)):
             raise Error(f"found an image of {pixels.shape}; accepted: {BINS} x {BINS}")
         out.append(1e3 * (spent[0] + time.perf_counter() - begun))
     return out
