@@ -122,6 +122,35 @@ def act(settings, seed, tools):
     return {"m": seed}, {}
 
 
+class Profiling(unittest.TestCase):
+    """Soundings through layers that the processing does not know."""
+
+    def test_echoes_arrive_where_rays_through_thin_layers_do(self):
+        import profiling
+        for bottom, depth in ((1440.0, 10.0), (1560.0, 10.0), (1560.0, 24.0), (1500.0, 10.0)):
+            settings = {k: v.default for k, v in profiling.SETTINGS.items()} | {"bottom_speed_m_s": bottom, "depth_m": depth}
+            for leaves in np.radians([-44.0, -20.0, 0.0, 5.0, 43.0]):
+                # Snell's law from layer to layer.
+                speed = 1500.0 + (bottom - 1500.0) * (np.arange(20000) + 0.5) / 20000 * depth / 30.0
+                sine = math.sin(leaves) * speed / 1500.0
+                across, time = (depth / 20000 * v.sum() for v in (sine / np.sqrt(1 - sine ** 2), 1 / speed / np.sqrt(1 - sine ** 2)))
+                towards = math.atan2(across, depth)
+                found = profiling.heard(settings, *(1500.0 * time * np.array([f(towards)]) for f in (math.sin, math.cos)))
+                np.testing.assert_allclose(np.ravel(found), [1500.0 * time * math.sin(leaves), 1500.0 * time * math.cos(leaves)], atol=1e-6)
+
+    def test_the_published_smile_is_what_is_judged(self):
+        import profiling
+        plan = scenario.Scenario(scenario.path_of("profiling_sound_speed"), {"profiling": profiling})
+        judged = [c for c in plan.criteria if c["measure"] == "smile_off_m"]
+        self.assertEqual([(c["statistic"], c.get("at_least"), c.get("at_most"), "where" in c) for c in judged],
+                         [("min", -0.004, None, False), ("max", None, 0.004, False)])
+        for run, smile in zip(plan.list_runs(), (-0.0576, 0.0584)):
+            edge = math.radians(43.0)
+            self.assertAlmostEqual(profiling.traced_depth(run.settings, edge) - profiling.traced_depth(run.settings, 0.0), smile, 4)
+        with self.assertRaisesRegex(scenario.Refused, "tide_m: found 1 with a bottom_speed_m_s that is not surface_speed_m_s"):
+            scenario.Scenario(scenario.path_of("profiling_sound_speed"), {"profiling": profiling}, sets=["tide_m=1"])
+
+
 class Runs(unittest.TestCase):
     """Runs whose code exits, dies or does not return."""
 

@@ -7,7 +7,7 @@ import os
 import numpy as np
 
 import report
-from scenario import SHIPPED, Setting
+from scenario import SHIPPED, Refused, Setting
 
 SETTINGS = {
     "floor": Setting("waves", "flat, or the swell of 1 m", words=["flat", "waves"]),
@@ -26,11 +26,15 @@ MEASURES = {
     "bias_m": ("m", "mean error of the chart's cells, positive too deep"),
     "coverage": ("", "share of the cells in the swath that have soundings"),
     "worst_beam_bins": ("range bins", "largest error of a beam's range over the flat floor against r = h / cos(theta)"),
-    "smile_m": ("m", "depth error of the outer beams less that of the middle one, positive too deep"),
+    "middle_m": ("m", "depth error of the middle 20 degrees of a flat floor, positive too deep"),
+    "smile_m": ("m", "depth error of the beams at 42 to 44 degrees less that of the middle 20 degrees, positive too deep"),
     "smile_expected_m": ("m", "the same by rays traced through the layers"),
+    "smile_off_m": ("m", "smile_m less smile_expected_m"),
 }
+TRACED_RAD = np.radians(np.linspace(0.0, 46.0, 47))  # straight lines between them are off by 0.05 mm
 HALF_SWATH_RAD = math.radians(45.0)
 SPEED_M_S = 1.0
+PROFILE_M = 30.0  # depth of the bottom's sound speed
 GRID_M = 0.2  # of the swell's heights; straight lines between them are off by 2 mm at most
 SHIP = """seed = {seed}
 [[objects]]
@@ -86,7 +90,7 @@ def _scene(settings, seed, tools, pings):
     top, bottom = settings["surface_speed_m_s"], settings["bottom_speed_m_s"]
     if bottom != top:
         scene += (f"[objects.sonars.water]\nsound_speed_m_s = {top}\n[objects.sonars.sound_speed]\n"
-                  f'profile = [[0, {top}], [30, {bottom}]]\nrays = "bent"\n')
+                  f'profile = [[0, {top}], [{PROFILE_M!r}, {bottom}]]\nrays = "bent"\n')
     return tools.write("scene.toml", scene + '[[objects]]\nname = "floor"\nclass = "seabed"\n' + _floor(settings, tools))
 
 
@@ -94,10 +98,39 @@ def traced_depth(settings, angle_rad, layers=4000):
     """Depth that the processing finds where a ray at this angle off the vertical meets the flat floor: the ray bends by
     Snell's law through thin layers, and its time counts at the surface's speed along a straight line."""
     top, bottom, h = settings["surface_speed_m_s"], settings["bottom_speed_m_s"], settings["depth_m"]
-    speed = top + (bottom - top) * (np.arange(layers) + 0.5) / layers * h / 30.0
+    speed = top + (bottom - top) * (np.arange(layers) + 0.5) / layers * h / PROFILE_M
     cosine = np.sqrt(1 - (math.sin(angle_rad) / top * speed) ** 2)
     time = (h / layers / speed / cosine).sum()
     return top * time * math.cos(angle_rad)
+
+
+def heard(settings, across, down):
+    """(across, down) of soundings as the processing finds them, which counts with the surface's speed along straight lines; arrays of
+    metres from the head. Given: the direction in which each point truly lies, as far off as its echo's time counts at that speed. The
+    program bends the times alone, so the direction in which an echo arrives is found here.
+
+    In a constant gradient g a ray is an arc. From speed c0 to a point at r in a direction at the angle a off the vertical, with h = r cos a
+    and x = r sin a, its time t has cosh(g t) = 1 + g^2 r^2 / (2 c0 (c0 + g h)), and it leaves at the angle b off the vertical with
+    tan b = x / (h + g r^2 / (2 c0)). Jensen et al., Computational Ocean Acoustics, 2nd ed. 2011, section 3.3.5 (rays are arcs of circles); the
+    rest follows from the circle through both points whose centre lies where the speed would be 0. Valid where c0 + g h > 0. The
+    gradient begins at the head, which lies at the mean surface or above."""
+    top = settings["surface_speed_m_s"]
+    gradient = (settings["bottom_speed_m_s"] - top) / PROFILE_M
+    if gradient == 0.0:
+        return across, down
+    counted = np.hypot(across, down)
+    sine, cosine = across / counted, down / counted
+    # The true range: r^2 - g k cos(a) r - c0 k = 0.
+    k = 2.0 * top * (np.cosh(gradient * counted / top) - 1.0) / gradient ** 2
+    r = 0.5 * (gradient * k * cosine + np.sqrt((gradient * k * cosine) ** 2 + 4.0 * top * k))
+    leaves = np.arctan2(r * sine, r * cosine + gradient * r ** 2 / (2.0 * top))
+    return counted * np.sin(leaves), counted * np.cos(leaves)
+
+
+def check(settings):
+    """Refuses a rising tide in layers of sound speed: heard() has the head at the mean surface."""
+    if settings["tide_m"] and settings["bottom_speed_m_s"] != settings["surface_speed_m_s"]:
+        raise Refused(f"tide_m: found {settings['tide_m']:g} with a bottom_speed_m_s that is not surface_speed_m_s; accepted: one of the two")
 
 
 def run(settings, seed, tools):
@@ -106,9 +139,11 @@ def run(settings, seed, tools):
     tools.neritic("render", scene, "--frames", pings, "--track-only", "--out", tools.folder, "-q")
     cloud = np.load(os.path.join(tools.folder, "track", "ship_multibeam", "cloud.npy"))
     bin_m = (_farthest_m(settings) - 1) / 500
-    x, found, z = cloud[:, 0], -cloud[:, 1], cloud[:, 2]
+    x, up = cloud[:, 0], _tide_m(settings, cloud[:, 0])
+    z, below = heard(settings, cloud[:, 2], up - cloud[:, 1])
+    found = below - up
     if not settings["tide_known"]:
-        found = found + _tide_m(settings, x)  # the processing puts the ship at the mean surface
+        found = found + up  # the processing puts the ship at the mean surface
 
     # The chart: the mean of the soundings of a cell, against the mean depth of the cell.
     cell, length = settings["cell_m"], settings["length_m"]
@@ -128,16 +163,18 @@ def run(settings, seed, tools):
     order = np.argsort(x[middle])[:: max(1, np.count_nonzero(middle) // 800)]
     series = {"x": x[middle][order].round(4).tolist(), "depth": found[middle][order].round(4).tolist()}
     if settings["floor"] == "flat":
-        up = _tide_m(settings, x)
         height = settings["depth_m"] + up
-        angle = np.arctan2(z, -cloud[:, 1] + up)
-        measures["worst_beam_bins"] = float(np.abs((-cloud[:, 1] + up - height) / np.cos(angle)).max() / bin_m)
-        # Beams within a degree of the edge of the swath, and of the middle.
-        edge, centre = math.radians(43.0), math.radians(1.0)
-        outer, inner = np.abs(np.abs(angle) - edge) < centre, np.abs(angle) < centre
+        angle = np.arctan2(z, below)
+        measures["worst_beam_bins"] = float(np.abs((below - height) / np.cos(angle)).max() / bin_m)
+        # Beams of 42 to 44 degrees and of the middle 20: over each of these the range passes several bins.
+        outer, inner = np.abs(np.abs(angle) - math.radians(43.0)) < math.radians(1.0), np.abs(angle) < math.radians(10.0)
         if outer.any() and inner.any():
+            measures["middle_m"] = float(found[inner].mean() - settings["depth_m"])
             measures["smile_m"] = float(found[outer].mean() - found[inner].mean())
-            measures["smile_expected_m"] = float(traced_depth(settings, edge) - traced_depth(settings, 0.0))
+            by_rays = np.array([traced_depth(settings, a) for a in TRACED_RAD])
+            expected = np.interp(np.abs(angle), TRACED_RAD, by_rays)
+            measures["smile_expected_m"] = float(expected[outer].mean() - expected[inner].mean())
+            measures["smile_off_m"] = measures["smile_m"] - measures["smile_expected_m"]
         series["angle_deg"] = np.degrees(angle[:: max(1, len(angle) // 600)]).round(3).tolist()
         series["beam_depth"] = found[:: max(1, len(angle) // 600)].round(4).tolist()
     return measures, series
