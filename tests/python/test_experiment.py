@@ -48,11 +48,26 @@ class Outcomes(unittest.TestCase):
     def test_every_level_of_every_knob_is_one_that_the_task_accepts(self):
         import outcomes
         import shark
-        asked = SimpleNamespace(runs=2, seed=None, set=[])
+        asked = SimpleNamespace(runs=2, seed=None, set=[], quick=False)
         made = outcomes.plans({"shark": shark}, asked)
         self.assertEqual([len(p.list_runs()) for p in made], [2 * len(k[1]) for k in outcomes.KNOBS])
         for plan, knob in zip(made, outcomes.KNOBS):
             self.assertIn(f"one knob turned: {knob[3]}. Its levels: {report.number(knob[1][0])}, ", plan.about)
+
+    @unittest.skipUnless(os.path.exists(detector.model_of("shipped")), "no shipped detector")
+    def test_a_quick_one_has_few_runs_that_draw(self):
+        import outcomes
+        import shark
+        made = outcomes.plans({"shark": shark}, SimpleNamespace(runs=None, seed=4, set=[], quick=True))
+        self.assertEqual([p.told_as for p in made], [f"{i + 1} of 7: {k[0]}" for i, k in enumerate(outcomes.KNOBS)])
+        runs = [r for p in made for r in p.list_runs()]
+        self.assertEqual({r.seed for r in runs}, set(range(4, 10)))
+        self.assertLessEqual(sum(r.settings["detector"] != "assumed" or r.settings["shark_known_by"] == "sonar" for r in runs), 6 * 5)
+        self.assertNotIn("reference", {r.settings["sonar_quality"] for r in runs if r.settings["shark_known_by"] == "sonar"})
+        # Every level is one of the whole, so that --resume without --quick goes on.
+        for plan, whole in zip(made, outcomes.plans({"shark": shark}, SimpleNamespace(runs=None, seed=4, set=[], quick=False))):
+            self.assertEqual(plan.fingerprint(), whole.fingerprint())
+            self.assertLessEqual({r.key() for r in plan.list_runs()}, {r.key() for r in whole.list_runs()})
 
     def test_a_run_that_did_not_block_is_slower_than_any(self):
         import outcomes
@@ -67,7 +82,7 @@ class Outcomes(unittest.TestCase):
         made = {"version": "neritic 0.1.0", "commit": None, "changed": None, "program": "feed"}
         with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.object(provenance, "of", lambda program: made), \
                 unittest.mock.patch.object(outcomes, "KNOBS", [("physics_hz", list(times), [], "physics, steps a second")]):
-            rows = outcomes.run({"shark": shark}, one, SimpleNamespace(out=folder, program="none", runs=10, seed=3, set=[]))
+            rows = outcomes.run({"shark": shark}, one, SimpleNamespace(out=folder, program="none", runs=10, seed=3, set=[], quick=False))
             page = pathlib.Path(folder, "index.html").read_text()
         self.assertEqual([[r[k] for k in ("time_low_s", "time_to_block_s", "time_high_s", "blocked_in_3_s")] for r in rows],
                          [[1.1, 1.45, 1.8, 1.0], [1.1, 1.45, None, 0.6], [1.0, None, None, 0.4]])

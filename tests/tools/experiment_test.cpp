@@ -23,9 +23,9 @@ struct Answer {
 };
 
 // The program of this build, with standard error.
-Answer experiment(const std::string& arguments) {
+Answer neritic(const std::string& arguments) {
   const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "../tools/neritic";
-  std::FILE* pipe = ::popen((program.string() + " experiment " + arguments + " 2>&1").c_str(), "r");
+  std::FILE* pipe = ::popen((program.string() + " " + arguments + " 2>&1").c_str(), "r");
   if (!pipe) return {};
   Answer said;
   char piece[4096];
@@ -34,6 +34,10 @@ Answer experiment(const std::string& arguments) {
   const int raw = ::pclose(pipe);
   said.status = WIFEXITED(raw) ? WEXITSTATUS(raw) : -1;
   return said;
+}
+
+Answer experiment(const std::string& arguments) {
+  return neritic("experiment " + arguments);
 }
 
 bool no_numpy() {
@@ -119,6 +123,63 @@ TEST(Experiment, ATasksFormulasAreCheckedBeforeItRuns) {
   refused("depth(rov) < deep", "accepted: stage_time, time");
   refused("depth(rov) <", "accepted: a formula");
   refused("[1][0]", "accepted: numbers, comparisons");
+}
+
+TEST(Experiment, ATradeOffTakesTheFlagsOfAnExperiment) {
+  if (no_numpy()) GTEST_SKIP() << "no numpy here";
+  const test::ScratchFolder folder;
+  const std::string out = " --out " + (folder / "out").string();
+  const auto refused = [&](const std::string& arguments, const std::string& words) {
+    const Answer said = neritic("tradeoff " + arguments + out);
+    EXPECT_EQ(said.status, 2) << arguments << "\n" << said.text;
+    EXPECT_THAT(said.text, HasSubstr(words));
+  };
+  refused("experiment --runs 2 --seed 3 --workers 1 --resume --quick --set offset=3",
+          "--set: found \"offset=3\"; accepted: KEY=VALUE, KEY one of offset_m (the nearest)");
+  for (const char* flag :
+       {"--runs 3", "--seed 3", "--set a=1", "--workers 2", "--resume", "--json"})
+    refused("deco " + std::string(flag), "accepted: that flag of tradeoff experiment alone");
+}
+
+// What Python makes of a word's hash, and so the order of a set of words, is else another at each
+// start.
+TEST(Experiment, AControllerThatGoesThroughASetOfWordsActsTheSameAtEachCall) {
+  const fs::path build = fs::read_symlink("/proc/self/exe").parent_path().parent_path();
+  if (!fs::exists(build / "python/neritic/__init__.py")) GTEST_SKIP() << "no Python package here";
+  const test::ScratchFolder folder;
+  ASSERT_TRUE(
+      write_text(
+          folder / "scene.toml",
+          "[physics]\n[[vehicles]]\nname = \"rov\"\nshape = \"box\"\nposition_m = [0, -6, 0]\n"
+          "dynamics = \"" +
+              (test::source_dir() / "assets/vehicles/bluerov2_heavy_dynamics.toml").string() +
+              "\"\n")
+          .ok());
+  const auto acts = [](const char* name, const char* what) {
+    return fmt::format(
+        "class {}:\n    def __init__(self, *_):\n        pass\n\n"
+        "    def act(self, *_):\n        return {}\n",
+        name, what);
+  };
+  ASSERT_TRUE(write_text(folder / "act.py", acts("Controller", "None")).ok());
+  ASSERT_TRUE(
+      write_text(folder / "play.py", acts("Player", "{'hash': hash('word') % 1000003}")).ok());
+  ASSERT_TRUE(write_text(folder / "own.toml",
+                         "[experiment]\nkind = \"task\"\nruns = 1\n[task]\n"
+                         "scene = \"scene.toml\"\ncontroller = \"act.py\"\n"
+                         "player = \"play.py\"\nparticipants = []\ntells = [\"hash\"]\n"
+                         "seconds = 0.2\n[[stages]]\nname = \"go\"\nuntil = \"time > 0.1\"\n"
+                         "[[measures]]\nname = \"found\"\nof = \"hash\"\nstatistic = \"last\"\n")
+                  .ok());
+  std::vector<nlohmann::json> found;
+  for (const char* out : {"one", "two"}) {
+    const Answer said =
+        experiment((folder / "own.toml").string() + " --out " + (folder / out).string());
+    ASSERT_EQ(said.status, 0) << said.text;
+    found.push_back(runs_of(folder / out)["{}"]["found"]);
+  }
+  EXPECT_TRUE(found[0].is_number()) << found[0];
+  EXPECT_EQ(found[0], found[1]);
 }
 
 TEST(Experiment, RefusesBadScenariosInOneLine) {

@@ -89,7 +89,7 @@ def every(asked):
         with named(name):
             plans[name] = planned(name, asked)
     for i, name in enumerate(names):
-        line = ""
+        line, plans[name].told_as = "", f"{i + 1} of {len(names)}: {name}"
         try:
             with named(name):
                 told.append(do(plans[name], asked, os.path.join(asked.out, name))[0])
@@ -148,6 +148,7 @@ def main():
     parser.add_argument("--resume", action="store_true")
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--quiet", action="store_true")
+    parser.add_argument("--quick", action="store_true")  # of tradeoff
     asked = parser.parse_args()
     try:
         endings.listen()

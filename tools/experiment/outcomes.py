@@ -29,15 +29,23 @@ KNOBS = [
     ("sonar_quality", ["draft", "standard", "reference"], ['shark_known_by="sonar"'], "quality of the sonar that knows the shark"),
 ]
 RUNS = 30
+QUICK_RUNS = 6  # the fewest whose median has an interval
+# Of knobs whose runs draw pictures or pings: --quick leaves out the other levels.
+QUICK_LEVELS = {"crop_px": [16, 48], "detector": ["assumed", "shipped"], "sonar_quality": ["draft", "standard"]}
+
+
+def knobs(quick):
+    return [(knob, QUICK_LEVELS.get(knob, levels) if quick else levels, others, words) for knob, levels, others, words in KNOBS]
 
 
 def plans(kinds, asked):
     """The scenario of each knob, all checked before the first runs."""
     out = []
-    for knob, levels, others, words in KNOBS:
+    for i, (knob, levels, others, words) in enumerate(knobs(asked.quick)):
         # From 1.0 to 1.5 m beside, where times spread least: shark_delay's, without its delay.
         sets = ["delay_s=0.0", f"{knob}={json.dumps(levels)}", *others, *asked.set]
-        plan = scenario.Scenario(scenario.path_of("shark_delay"), kinds, asked.runs or RUNS, asked.seed, sets)
+        plan = scenario.Scenario(scenario.path_of("shark_delay"), kinds, asked.runs or (QUICK_RUNS if asked.quick else RUNS), asked.seed, sets)
+        plan.told_as = f"{i + 1} of {len(KNOBS)}: {knob}"
         plan.criteria = []
         plan.title = f"Time to block over {words}"
         plan.about = (f"The task of the shark, the ROV from 1.0 to 1.5 m beside, with one knob turned: {words}. Its levels: "
@@ -49,7 +57,7 @@ def plans(kinds, asked):
 def run(kinds, one, asked):
     """one(plan): the runner of a scenario, as __main__ has it. Returns the summaries."""
     rows = []
-    for (knob, levels, _, _), plan in zip(KNOBS, plans(kinds, asked)):
+    for (knob, levels, _, _), plan in zip(knobs(asked.quick), plans(kinds, asked)):
         results = one(plan, os.path.join(asked.out, knob))
         for level in levels:
             of = [r for r in results if r["condition"].get(knob) == level]

@@ -214,7 +214,7 @@ def _run_all(scenario, out, program, workers, resume, quiet):
                     PERSON_GRACE_S if alone else GRACE_S)
     # Written anew when whole, so that a line that was cut off is gone.
     _write_lines(path, [head, *kept.values()])
-    progress = Progress(scenario.name, len(runs), len(runs) - len(missing), quiet)
+    progress = Progress(getattr(scenario, "told_as", scenario.name), len(runs), len(runs) - len(missing), quiet)
     try:
         with open(path, "a", encoding="utf-8") as file:
             for result in made:

@@ -109,10 +109,22 @@ struct KeysFlags {
 };
 Result<std::string> run_keys(const KeysFlags& flags);
 
+struct ExperimentFlags {
+  std::string name, out;
+  std::optional<std::uint64_t> runs, seed;
+  std::vector<std::string> set;  // KEY=VALUE
+  std::uint32_t workers = 0;     // 0: as many as cores
+  bool resume = false, json = false, quiet = false;
+  bool quick = false;  // of the trade-off: fewer runs and levels
+};
+// Becomes the Python module tools/experiment: returns only if that cannot be started.
+Status run_experiment(const ExperimentFlags& flags);
+
 struct TradeoffFlags {
   std::string what, device, kind, scene = "assets/scenes/harbour.toml";
   std::filesystem::path out, recordings;
   bool quick = false;
+  ExperimentFlags experiment;  // of what "experiment" alone
 };
 Result<std::string> run_tradeoff(const TradeoffFlags& flags);
 
@@ -165,15 +177,6 @@ struct RegisterFlags {
 };
 Status run_register(const RegisterFlags& flags);
 
-struct ExperimentFlags {
-  std::string name, out;
-  std::optional<std::uint64_t> runs, seed;
-  std::vector<std::string> set;  // KEY=VALUE
-  std::uint32_t workers = 0;     // 0: as many as cores
-  bool resume = false, json = false, quiet = false;
-};
-// Becomes the Python module tools/experiment: returns only if that cannot be started.
-Status run_experiment(const ExperimentFlags& flags);
 // words: of `neritic study`, which tools/experiment/study reads.
 Status run_study(const std::vector<std::string>& words);
 

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <filesystem>
 
 #include "engine/core/refusal.hpp"
@@ -18,6 +19,9 @@ namespace {
 Status become(const char* what, const std::filesystem::path& module,
               std::vector<std::string> words) {
   words.insert(words.begin(), {"", "-B", module.string()});
+  // Python else orders the words of a set anew at each start, and a controller that goes through
+  // one would act otherwise.
+  ::setenv("PYTHONHASHSEED", "0", 1);
   // A signal that comes while Python starts would end it with a traceback. It waits until the
   // module has its handlers (tools/experiment/endings.py), which lets it through.
   sigset_t late{}, before{};
@@ -65,6 +69,7 @@ Status run_experiment(const ExperimentFlags& flags) {
   if (flags.resume) words.push_back("--resume");
   if (flags.json) words.push_back("--json");
   if (flags.quiet) words.push_back("--quiet");
+  if (flags.quick) words.push_back("--quick");
   return become("experiment", module, std::move(words));
 }
 

@@ -186,12 +186,26 @@ Result<std::string> trade_network(const TradeoffFlags& flags) {
 Result<std::string> trade_experiment(const TradeoffFlags& flags) {
   if (!flags.kind.empty())
     return refusal("tradeoff experiment", fmt::format("kind '{}'", flags.kind), "none");
-  ExperimentFlags experiment;
+  ExperimentFlags experiment = flags.experiment;
   experiment.name = "tradeoff";
   experiment.out = flags.out.string();
-  if (flags.quick) experiment.runs = 6;
+  experiment.quick = flags.quick;
   NERITIC_TRY_STATUS(run_experiment(experiment));
   return std::string();
+}
+
+// The flags of many runs mean nothing to the others.
+Status must_be_of_experiment(const TradeoffFlags& flags) {
+  const ExperimentFlags& e = flags.experiment;
+  const char* given = e.runs           ? "--runs"
+                      : e.seed         ? "--seed"
+                      : !e.set.empty() ? "--set"
+                      : e.workers      ? "--workers"
+                      : e.resume       ? "--resume"
+                      : e.json         ? "--json"
+                                       : nullptr;
+  if (!given || flags.what == "experiment") return {};
+  return refusal("tradeoff " + flags.what, given, "that flag of tradeoff experiment alone");
 }
 
 Result<std::string> trade_sonar(const TradeoffFlags& flags) {
@@ -243,6 +257,7 @@ Result<std::string> trade_sonar(const TradeoffFlags& flags) {
 }  // namespace
 
 Result<std::string> run_tradeoff(const TradeoffFlags& flags) {
+  NERITIC_TRY_STATUS(must_be_of_experiment(flags));
   NERITIC_TRY_STATUS(check_output_folder("--out", flags.out));
   if (flags.what == "sonar") return trade_sonar(flags);
   if (flags.what == "physics") return trade_physics(flags);

@@ -20,7 +20,7 @@ Result<CommandLine> parse_command_line(const std::vector<std::string>& arguments
   add_dive(app, line);
   add_serve(app, line);
   add_keys(app, line.run);
-  add_tradeoff(app, line.run);
+  add_tradeoff(app, line);
   add_check(app, line.run);
   add_plan(app, line.run);
   add_physio(app, line.run);

@@ -137,6 +137,22 @@ void add_register(CLI::App& app, Run& run) {
       [flags, &run] { run = [flags] { return nothing_to_say(run_register(*flags)); }; });
 }
 
+void add_flags_of_runs(CLI::App& command, ExperimentFlags& flags) {
+  command.add_option("--runs", flags.runs, "runs of each condition, in place of the scenario's")
+      ->check(between(1, 1000000));
+  command.add_option("--seed", flags.seed, "seed of the first run, in place of the scenario's")
+      ->check(between<std::int64_t>(0, INT64_MAX));  // as a scene's file
+  command.add_option("--set", flags.set,
+                     "KEY=VALUE: a setting in place of the scenario's; a list [A, B] makes "
+                     "conditions; may be repeated");
+  command
+      .add_option("--workers", flags.workers,
+                  "number of runs at the same time; 0: as many as cores")
+      ->check(between(0, 1024));
+  command.add_flag("--resume", flags.resume, "keeps the finished runs that are in --out");
+  command.add_flag("--json", flags.json, "prints JSON on standard output");
+}
+
 void add_experiment(CLI::App& app, CommandLine& line) {
   auto flags = std::make_shared<ExperimentFlags>();
   CLI::App* command = app.add_subcommand(
@@ -151,19 +167,7 @@ void add_experiment(CLI::App& app, CommandLine& line) {
       ->add_option("--out", flags->out,
                    "folder for runs.jsonl, runs.csv, results.json, report.html")
       ->required();
-  command->add_option("--runs", flags->runs, "runs of each condition, in place of the scenario's")
-      ->check(between(1, 1000000));
-  command->add_option("--seed", flags->seed, "seed of the first run, in place of the scenario's")
-      ->check(between<std::int64_t>(0, INT64_MAX));  // as a scene's file
-  command->add_option("--set", flags->set,
-                      "KEY=VALUE: a setting in place of the scenario's; a list [A, B] makes "
-                      "conditions; may be repeated");
-  command
-      ->add_option("--workers", flags->workers,
-                   "number of runs at the same time; 0: as many as cores")
-      ->check(between(0, 1024));
-  command->add_flag("--resume", flags->resume, "keeps the finished runs that are in --out");
-  command->add_flag("--json", flags->json, "prints JSON on standard output");
+  add_flags_of_runs(*command, *flags);
   command->footer("Example: neritic experiment echo_sounder --out out/echo --set slope_deg=[0,8]");
   command->callback([flags, &line] {
     flags->quiet = line.quiet;

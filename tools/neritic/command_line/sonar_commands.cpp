@@ -128,7 +128,7 @@ void add_sonar(CLI::App& app, Run& run) {
   });
 }
 
-void add_tradeoff(CLI::App& app, Run& run) {
+void add_tradeoff(CLI::App& app, CommandLine& line) {
   auto flags = std::make_shared<TradeoffFlags>();
   CLI::App* command = app.add_subcommand(
       "tradeoff", "measures the error of a model against its cost, over all of its settings");
@@ -157,8 +157,15 @@ void add_tradeoff(CLI::App& app, Run& run) {
                       "rate in the name: ..._12bpm_...)");
   command->add_option("--device", flags->device, "Vulkan device: part of its name, or its index");
   command->add_flag("--quick", flags->quick,
-                    "a fast trial with fewer rays, bins and points; gives no quality levels");
-  command->callback([flags, &run] { run = [flags] { return run_tradeoff(*flags); }; });
+                    "a fast trial with fewer rays, bins, points, runs and levels; gives no quality "
+                    "levels");
+  add_flags_of_runs(*command, flags->experiment);
+  for (const char* flag : {"--runs", "--seed", "--set", "--workers", "--resume", "--json"})
+    command->get_option(flag)->group("Of experiment alone");
+  command->callback([flags, &line] {
+    flags->experiment.quiet = line.quiet;
+    line.run = [flags] { return run_tradeoff(*flags); };
+  });
 }
 
 void add_check(CLI::App& app, Run& run) {
