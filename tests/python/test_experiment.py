@@ -438,6 +438,26 @@ class Progress(unittest.TestCase):
         self.assertRegex(told.getvalue(), r"note: slow: run 1 of 2, 0:0\d left\n")
 
 
+class Draws(unittest.TestCase):
+    def test_a_whole_number_is_drawn_evenly_with_both_ends(self):
+        import shark
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "own.toml")
+            pathlib.Path(path).write_text('[experiment]\nkind = "shark"\n[vary]\ncrop_px = [62, 66]\nmarkers = [0, 65535]\ngaze_error_deg = [0.5, 1.0]\n')
+            runs = scenario.Scenario(path, {"shark": shark}, runs=2000).list_runs()
+            found = [r.settings["crop_px"] for r in runs]
+            self.assertEqual(set(map(type, found)), {int})
+            counts = [found.count(v) for v in range(62, 67)]
+            self.assertEqual(sum(counts), 2000)
+            # 400 each: the deviation of a count is 18.
+            self.assertLess(max(abs(n - 400) for n in counts), 4 * 18, counts)
+            self.assertTrue(all(0.5 <= r.settings["gaze_error_deg"] < 1.0 for r in runs))
+            self.assertLess(max(r.settings["markers"] for r in runs), 65536)
+        # The largest of what SHA-256 gives is still within.
+        with unittest.mock.patch.object(scenario, "draw", lambda *_: 1 - 2.0 ** -53):
+            self.assertEqual(scenario.draw_whole(1, "k", -3, 2 ** 31), 2 ** 31)
+
+
 class Refusals(unittest.TestCase):
     def test_each_name_is_told_once_with_the_nearest_marked(self):
         with self.assertRaises(scenario.Refused) as caught:

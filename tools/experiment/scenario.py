@@ -15,6 +15,7 @@ import tomllib
 import files_read
 
 HERE = os.path.dirname(os.path.realpath(__file__))
+DRAWS = 2  # how settings are drawn: another number where a seed draws other values
 SHIPPED = os.path.normpath(os.path.join(HERE, "..", "..", "assets", "experiments"))
 STATISTICS = ("median", "mean", "min", "max", "share")
 MOST_RUNS = 1_000_000
@@ -136,6 +137,11 @@ def draw(seed, key, low, high):
     """Uniform in [low, high): by a counter, SHA-256 of the seed and the key."""
     digest = hashlib.sha256(f"{seed}:{key}".encode()).digest()
     return low + (high - low) * (int.from_bytes(digest[:8], "big") >> 11) / 2 ** 53
+
+
+def draw_whole(seed, key, low, high):
+    """A whole number in [low, high], each as likely."""
+    return low + math.floor(draw(seed, key, 0.0, 1.0) * (high - low + 1))
 
 
 class Scenario:
@@ -286,8 +292,7 @@ class Scenario:
             files = self._hashes({**self.settings, **condition})
             for i in range(self.runs):
                 seed = self.seed + i
-                drawn = {k: draw(seed, k, *v) for k, v in self.vary.items()}
-                drawn = {k: int(v) if self.kind.SETTINGS[k].whole else v for k, v in drawn.items()}
+                drawn = {k: (draw_whole if self.kind.SETTINGS[k].whole else draw)(seed, k, *v) for k, v in self.vary.items()}
                 out.append(Run(len(out), condition, seed, {**self.settings, **drawn, **condition}, files))
         return out
 
@@ -301,5 +306,5 @@ class Scenario:
         numbers, and is made anew where one was edited."""
         own = [self.data.get(k) for k in ("task", "stages", "measures")]
         decisive = {k: v for k, v in self.settings.items() if self.kind.SETTINGS[k].decides}
-        told = [self.kind_name, decisive, self.vary, sorted(self.factors), own]
+        told = [DRAWS, self.kind_name, decisive, self.vary, sorted(self.factors), own]
         return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:16]
