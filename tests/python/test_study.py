@@ -11,6 +11,7 @@ import tempfile
 import threading
 import time
 import unittest
+import unittest.mock
 from types import SimpleNamespace
 
 from experiment_tools import TOOLS
@@ -117,6 +118,7 @@ class Wizard(unittest.TestCase):
         """(the orders of the robot that has some, markers) of keys and pauses."""
         import wizard
         self.robots, marks, (ours, theirs) = [FakeRobot(name, modems) for name in robots], [], pty.openpty()
+        self.marks = marks
         diver = SimpleNamespace(name="diver", modem=divers_modem, jacket=lambda: None)
         streams = [SimpleNamespace(name=f"{name}/gripper") for name in robots if grips]
         world = SimpleNamespace(agents={a.name: a for a in [*self.robots, diver]}, streams=streams, close=lambda: None)
@@ -194,6 +196,16 @@ class Wizard(unittest.TestCase):
     def test_keys_that_come_at_once_are_all_taken(self):
         _, marks = self.session(0.3, "135", 0.5)
         self.assertEqual([m["phrase"] for m in marks if m["marker"] == "wizard says"], ["come here", "look there", "well done"])
+
+    def test_its_end_is_marked_where_the_server_has_gone(self):
+        def gone(*_, **__):
+            raise RuntimeError("no answer")
+        with unittest.mock.patch.object(FakeRobot, "release", gone):
+            with self.assertRaisesRegex(scenario.Failed, "study wizard: no answer"):
+                self.session(0.3, "w", 0.2)
+        self.assertEqual([m for m in self.marks if "ends" in m["marker"]], [{"marker": "wizard ends", "released": False}])
+        self.session(0.3)
+        self.assertEqual(self.marks[-1], {"marker": "wizard ends", "released": True})
 
     def test_after_a_key_and_after_stop_the_robot_is_held_until_it_is_given_back(self):
         told, marks = self.session(0.2, "w", 0.3, " ", 2.5, "0", 1.0)
@@ -308,6 +320,33 @@ class Study(unittest.TestCase):
                 status, text = self.study("table")
                 self.assertEqual((status, text.count("\n")), (2, 1), text)
                 self.assertIn("study.json: found format 3; accepted: 1, 2", text)
+
+    def test_what_is_asked_between_blocks_is_in_the_table_and_goes_on(self):
+        with tempfile.TemporaryDirectory() as self.scratch:
+            self.folder = os.path.join(self.scratch, "study")
+            self.write("plan.toml", self.PLAN + '[questionnaires.c]\nitems = ["x", "y"]\n[[blocks]]\nname = "asked_b"\n')
+            self.assertEqual(self.study("begin", "--plan", os.path.join(self.scratch, "plan.toml"))[0], 0)
+            self.study("enrol", answers="yes\n")
+            status, text = self.study("ask", "P01", "c", answers="2\n")
+            self.assertEqual(status, 1, text)  # cut off after the first question
+            self.assertEqual(self.study("table")[1].count("\n"), 1)
+            self.assertEqual(self.study("ask", "P01", "trust", answers="4\n" * 12 + "\n")[0], 0)
+            status, text = self.study("ask", "P01", "c", answers="5\n\n")
+            self.assertEqual(status, 0, text)
+            self.assertRegex(text, r"Goes on with c of asked_\d{8}_\d{6}, 1 of 2 answered")
+            # Again at once: another one, also within the same second.
+            for _ in range(3):
+                status, text = self.study("ask", "P01", "c", answers="1\n1\n\n")
+                self.assertEqual((status, "1/2" in text), (0, True), text)
+            rows = [r.split(",") for r in self.study("table")[1].splitlines()]
+            self.assertEqual(sorted(rows[0]), ["block", "c_mean", "participant", "trust_mean", "turn"])
+            mean = rows[0].index("c_mean")
+            self.assertEqual([r[mean] for r in rows[1:] if r[mean]], ["3.5", "1.0", "1.0", "1.0"])
+            self.assertEqual(len({r[1] for r in rows[1:] if r[mean]}), 4)
+            for row in rows[1:]:
+                self.assertRegex(row[1], r"^asked_\d{8}_\d{6}")
+            self.assertEqual(self.study("withdraw", "P01", "--yes")[0], 0)
+            self.assertEqual(self.read("scores.csv").count("\n"), 1)
 
     def test_questionnaires_of_one_moment_do_not_give_one_score_twice(self):
         with tempfile.TemporaryDirectory() as self.scratch:

@@ -246,16 +246,48 @@ class Screen:
         return answer.strip()
 
 
+ASKED = "asked_"  # a block of `ask` is named by it and the time
+
+
+def _given(path):
+    """The answers of a file; None where there is none."""
+    if not os.path.exists(path):
+        return None
+    with open(path, encoding="utf-8") as file:
+        return json.load(file)
+
+
+def asked_of(study, place):
+    """The answers to `ask`, the oldest first."""
+    found = [_given(path) for path in glob.glob(os.path.join(glob.escape(place), ASKED + "*.json"))]
+    return sorted((g for g in found if g and g["when"] not in study.names), key=lambda g: (g["when"], g["questionnaire"]))
+
+
+def _is_done(given):
+    return bool(given.get("ended")) or "scores" in given
+
+
+def ask(study, who, name, screen):
+    """One questionnaire now; the newest of its kind that was interrupted goes on."""
+    place = study.place(who)
+    begun = [g for g in asked_of(study, place) if g["questionnaire"] == name and not _is_done(g)]
+    when = at = begun[-1]["when"] if begun else time.strftime(ASKED + "%Y%m%d_%H%M%S")
+    number = 1
+    while not begun and os.path.exists(study.answers_file(place, when, name)):  # of the same second
+        number += 1
+        when = f"{at}_{number}"
+    if begun:
+        screen.say(f"Goes on with {name} of {when}, {len(begun[-1]['answers'])} of {len(study.forms[name].items)} answered.")
+    questionnaire(study, who, name, when, screen)
+
+
 def questionnaire(study, who, name, when, screen):
     """Asks what is not yet answered: a questionnaire that was interrupted goes on where it stopped. "back" asks the question before
     again, "skip" declines an answer, which is kept as null; a questionnaire with one has no score."""
     place, form = study.place(who), study.forms[name]
     path = study.answers_file(place, when, name)
-    given = {"questionnaire": name, "when": when, "answers": []}
-    if os.path.exists(path):
-        with open(path, encoding="utf-8") as file:
-            given = json.load(file)
-    if given.get("ended") or "scores" in given:
+    given = _given(path) or {"questionnaire": name, "when": when, "answers": []}
+    if _is_done(given):
         return given
     screen.say(f"\n{form.title}: {len(form.items)} questions, {form.ends}. In place of a number: back (the question before), skip (no answer).")
     note(place, marker=f"questionnaire {name} begins", when=when)
@@ -479,23 +511,21 @@ def _withdraw(asked, screen):
 
 
 def scores(study):
-    """CSV: a row a participant and block (before and after are blocks too), the scores side by side."""
+    """CSV: a row a participant and block (before and after are blocks too), the scores side by side, and one for each questionnaire that
+    `ask` asked, whose block says when."""
     rows, columns = [], ["participant", "block", "turn"]
     for who, about in study.data["participants"].items():
         if about["withdrawn"]:
             continue
         place = os.path.join(study.folder, "participants", who)
         order = [study.names[i] for i in study.data["orders"][about["order"]]]
-        for when in ["before", *order, "after"]:
-            row = {"participant": who, "block": when, "turn": order.index(when) + 1 if when in order else ""}
-            for name in study.forms:
-                path = study.answers_file(place, when, name)
-                if os.path.exists(path):
-                    with open(path, encoding="utf-8") as file:
-                        row |= {k: round(v, 4) for k, v in json.load(file).get("scores", {}).items()}
-            if len(row) > 3:
-                rows.append(row)
-                columns += [c for c in row if c not in columns]
+        moments = [(when, [_given(study.answers_file(place, when, name)) for name in study.forms]) for when in ["before", *order, "after"]]
+        for when, given in moments + [(g["when"], [g]) for g in asked_of(study, place)]:
+            told = [g["scores"] for g in given if g and g.get("scores")]
+            if told:
+                row = {"participant": who, "block": when, "turn": order.index(when) + 1 if when in order else ""}
+                rows.append(row | {k: round(v, 4) for scores_of in told for k, v in scores_of.items()})
+                columns += [c for c in rows[-1] if c not in columns]
     text = io.StringIO()
     out = csv.DictWriter(text, columns, lineterminator="\n")
     out.writeheader()
@@ -550,7 +580,7 @@ def main():
             if asked.text not in study.forms:
                 raise Refused(f"study ask: found {asked.text or 'no questionnaire'}; accepted: {', '.join(study.forms)}")
             with Present(asked.folder, asked.who):
-                questionnaire(study, asked.who, asked.text, time.strftime("asked_%Y%m%d_%H%M%S"), screen)
+                ask(study, asked.who, asked.text, screen)
         elif asked.what == "mark":
             with Present(asked.folder, asked.who) as present:
                 note(present.place, marker=asked.text or "mark")

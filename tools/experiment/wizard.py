@@ -135,8 +135,8 @@ def _play(world, robot, voice, note, refusals):
     grips = any(stream.name == f"{robot.name}/gripper" for stream in world.streams)
     writes = is_read(world, robot)
     print(help_of(robot.name, grips, bool(voice.words), writes), flush=True)
+    before, pressed, told, released = termios.tcgetattr(sys.stdin), {}, None, False
     note(marker="wizard begins", robot=robot.name)
-    before, pressed, told = termios.tcgetattr(sys.stdin), {}, None
     tty.setcbreak(sys.stdin)
     try:
         while True:
@@ -174,9 +174,14 @@ def _play(world, robot, voice, note, refusals):
                 note(marker="wizard flies", velocity=way)
             told = way
     finally:
-        termios.tcsetattr(sys.stdin, termios.TCSADRAIN, before)
-        _give_back(robot, grips)
-        note(marker="wizard ends")
+        try:
+            termios.tcsetattr(sys.stdin, termios.TCSADRAIN, before)
+        finally:
+            try:
+                _give_back(robot, grips)
+                released = True
+            finally:  # also where the server or the terminal has gone
+                note(marker="wizard ends", released=released)
 
 
 def _give_back(robot, grips):
