@@ -147,6 +147,14 @@ class Judging(unittest.TestCase):
             _, low, high = intervals.median_difference_interval(list(zip(second, first)), draws=400)
             within += low <= 1.0 <= high
         self.assertTrue(0.90 <= within / 200 <= 1.0, within)
+        # Of few pairs too: of 95 % in 600 samples the deviation is 0.9 %.
+        rng, within = np.random.Generator(np.random.Philox(key=8)), 0
+        for _ in range(600):
+            first = rng.normal(0, 1, 6)
+            second = 0.5 * first + rng.normal(1, 1, 6)
+            _, low, high = intervals.median_difference_interval(list(zip(second, first)))
+            within += low <= 1.0 <= high
+        self.assertGreaterEqual(within / 600, 0.96)
         self.assertEqual(intervals.median_difference_interval([(math.inf, 1.0)] * 3 + [(2.0, 1.0)] * 4), (1.0, 1.0, math.inf))
 
     def compare(self, sets, numbers, tables="", of="m"):

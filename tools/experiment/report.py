@@ -82,7 +82,7 @@ def made_by(made):
 
 
 INTERVALS = ("Intervals are of 95 %, of one condition: of a median by order statistics, of a share Wilson's, of a mean by Student's t. A "
-             "difference of two conditions is paired by their seeds: of medians by 2000 resamplings of the pairs, of shares Newcombe's, of "
+             "difference of two conditions is paired by their seeds: of medians by 2000 resamplings of the pairs (expanded percentiles), of shares Newcombe's, of "
              "means by Student's t of the differences. The least and the most of runs have none.")
 
 
