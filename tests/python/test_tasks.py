@@ -1,4 +1,5 @@
 """Tasks of neritic experiment: formulas, triggers, measures, scenario files. Exit 77: skipped."""
+import json
 import math
 import os
 import re
@@ -178,7 +179,7 @@ class Tasks(unittest.TestCase):
 
     def test_no_stage_ends_and_no_run_stops_by_what_is_not_known(self):
         late = 'participants = ["rov", "diver"]\ntells = ["done"]\nseconds = 3.0'
-        for until in ("done", "1 / 0", "heart(rov) - 500", "not (heart(rov) < 500)"):
+        for until in ("done", "time / 0", "heart(rov) - 500", "not (heart(rov) < 500)"):
             stages = f'[[stages]]\nname = "work"\nuntil = "{until}"\n'
             measures = self.run_of(self.made(task=late, stages=stages, player="return {}"))
             self.assertEqual((measures["success"], measures["failure"]), (False, f"stage work not done in 3 s: {until} was no number at the end"))
@@ -324,6 +325,42 @@ wanted_m = "3 - share - 0.01 * heart(diver)"
         own = self.write("r/ctl.py", text)
         with self.assertRaisesRegex(scenario.Refused, "random.py: found a module of a name that Python or neritic has; accepted: another name"):
             plan.kind.check(plan.settings | {"controller": own})
+
+    def test_what_no_run_could_do_is_refused(self):
+        near = '[[stages]]\nname = "near"\nuntil = "{}"\n'
+        held = near.format("time > 1")
+        self.refused(r"stages\[0\].held_s: found 30 of at most 20 s .*accepted: no more", task="seconds = 20", stages=held + "held_s = 30\n")
+        self.refused(r"held_s: found 5 of at most 4 s", stages=held + "held_s = 5\nat_most_s = 4\n")
+        self.refused("task.seconds: found 20, but the stages' held_s are 24 together; accepted: a longer run", task="seconds = 20",
+                     stages=held + "held_s = 12\n" + held.replace("near", "far") + "held_s = 12\n")
+        for until in ("0", "1 > 2", "1 / 0", "not 3"):
+            self.refused(r"stages\[0\].until: found .*, which is never so; accepted", stages=near.format(until))
+        for stop in ("1", "2 > 1", "1 / 0"):
+            self.refused("task.stop: found .*, which is always so or never known; accepted", task=f'stop = "{stop}"')
+        self.made(task='stop = "0"\nseconds = 20', stages=held + "held_s = 19\nat_most_s = 19\n")
+
+    def test_a_long_text_is_not_echoed_whole(self):
+        long = "time > 1 and " * 500
+        for text in (long, long + "depth(whale) > 1", "1" + " + 1" * 3000 + " + x", "x" * 6000, "-" * 500 + "1 > x"):
+            with self.assertRaises(scenario.Refused) as caught:
+                self.made(stages=f'[[stages]]\nname = "near"\nuntil = "{text}"\n')
+            self.assertLess(len(str(caught.exception)), 700)
+        for more in ({"sets": ["x" * 6000]}, {"sets": ["controller=" + json.dumps(["a" * 6000] * 2)]}, {"task": f"tells = '{'x' * 6000}'"},
+                     {"head": "x" * 6000 + " = 1\n"}, {"task": f"seconds = '{'x' * 6000}'"}):
+            with self.assertRaises(scenario.Refused) as caught:
+                self.made(**more)
+            self.assertLess(len(str(caught.exception)), 700, more)
+
+    def test_an_empty_word_is_no_file(self):
+        import shark
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "own.toml")
+            with open(path, "w") as file:
+                file.write('[experiment]\nkind = "shark"\n')
+            with self.assertRaisesRegex(scenario.Refused, '--set detector: found ""; accepted: text'):
+                scenario.Scenario(path, {"shark": shark}, sets=['detector=""'])
+        with self.assertRaisesRegex(scenario.Refused, '--set controller: found ""; accepted: text'):
+            self.made(sets=['controller=""'])
 
     def test_what_is_read_is_text(self):
         stages = '[[stages]]\nname = "near"\nuntil = "time > 1"\n[[measures]]\nname = "m"\nof = "time"\n'

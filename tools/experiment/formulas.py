@@ -12,7 +12,7 @@ import warnings
 
 import numpy as np
 
-from scenario import Refused
+from scenario import Refused, short
 
 _BINARY = {ast.Add: lambda a, b: a + b, ast.Sub: lambda a, b: a - b, ast.Mult: lambda a, b: a * b,
            ast.Div: lambda a, b: a / b if b else math.nan, ast.Pow: lambda a, b: _power(a, b)}
@@ -100,17 +100,20 @@ class Formula:
         tells). bodies: [(signal, name)], of which a signal needs a human's body."""
         self.where, self.text, self.bodies, self._places = where, text, [], set(places)
         if not isinstance(text, str):
-            raise Refused(f"{where}: found {text!r}; accepted: a formula in quotes")
+            raise Refused(f"{where}: found {short(repr(text))}; accepted: a formula in quotes")
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("error", SyntaxWarning)  # is raised as a SyntaxError: "1or 2"
                 self._tree = ast.parse(text, mode="eval").body
         except (SyntaxError, ValueError, RecursionError):
-            raise Refused(f"{where}: found \"{text}\"; accepted: a formula, as \"distance(rov, diver) < 2\"") from None
-        self._check(self._tree, set(names), set(numbers))
+            raise Refused(f"{where}: found \"{short(text)}\"; accepted: a formula, as \"distance(rov, diver) < 2\"") from None
+        try:
+            self._check(self._tree, set(names), set(numbers))
+        except RecursionError:
+            raise Refused(f"{where}: found \"{short(text)}\", whose parts are nested too deep; accepted: a shorter formula") from None
 
     def _refuse(self, found, accepted):
-        raise Refused(f"{self.where}: found {found} in \"{self.text}\"; accepted: {accepted}")
+        raise Refused(f"{self.where}: found {short(found)} in \"{short(self.text)}\"; accepted: {accepted}")
 
     def _check(self, node, names, numbers):
         if isinstance(node, ast.Constant) and isinstance(node.value, (int, float)):
@@ -157,6 +160,10 @@ class Formula:
     def __setstate__(self, state):
         self.where, self.text = state
         self._tree = ast.parse(self.text, mode="eval").body
+
+    def constant(self):
+        """Its value where it names nothing; else None."""
+        return None if any(isinstance(n, ast.Name) for n in ast.walk(self._tree)) else self._value(self._tree, None)
 
     def value(self, moment):
         return self._value(self._tree, moment)

@@ -51,7 +51,7 @@ def path_of(name):
     if name not in names():
         near = difflib.get_close_matches(name, names(), 1)
         known = [n + " (the nearest)" if n in near else n for n in names()]
-        raise Refused(f"experiment: found \"{name}\"; accepted: {', '.join(known)}, all, or a .toml file")
+        raise Refused(f"experiment: found \"{short(name)}\"; accepted: {', '.join(known)}, all, or a .toml file")
     return os.path.join(SHIPPED, name + ".toml")
 
 
@@ -71,12 +71,17 @@ def check_keys(where, table, accepted):
     for key in table:
         if key not in accepted:
             near = difflib.get_close_matches(key, accepted, 1)
-            raise Refused(f"{where}: found key \"{key}\"; accepted: "
+            raise Refused(f"{where}: found key \"{short(key)}\"; accepted: "
                           + (f"{near[0]} (the nearest)" if near else ", ".join(accepted)))
 
 
+def short(text, most=120):
+    """A text as it is echoed: of a long one the first part."""
+    return text if len(text) <= most else f"{text[:most]}... ({len(text)} characters)"
+
+
 def _words(value):
-    return json.dumps(value, default=str) if not isinstance(value, (dict, list)) else ("a table" if isinstance(value, dict) else "a list" if value else "an empty list")
+    return short(json.dumps(value, default=str)) if not isinstance(value, (dict, list)) else ("a table" if isinstance(value, dict) else "a list" if value else "an empty list")
 
 
 def _number(where, value, low, high, whole=False):
@@ -114,7 +119,7 @@ class Setting:
             if not isinstance(value, bool):
                 raise Refused(f"{where}: found {_words(value)}; accepted: true or false")
         elif isinstance(self.default, str):
-            if not isinstance(value, str) or (self.words and value not in self.words):
+            if not isinstance(value, str) or (self.words and value not in self.words) or (not value and self.default):
                 raise Refused(f"{where}: found {_words(value)}; accepted: "
                               + (", ".join(self.words) if self.words else "text"))
         else:
@@ -222,7 +227,7 @@ class Scenario:
         known = [*self.kind.SETTINGS, "run_limit_s"]
         if not mark or key not in known:
             near = difflib.get_close_matches(key, known, 1)
-            raise Refused(f"--set: found \"{text}\"; accepted: KEY=VALUE, KEY one of "
+            raise Refused(f"--set: found \"{short(text)}\"; accepted: KEY=VALUE, KEY one of "
                           + (f"{near[0]} (the nearest), " if near else "") + ", ".join(known))
         try:
             value = tomllib.loads(f"v = {raw}")["v"]

@@ -20,7 +20,7 @@ import task_figures
 from formulas import says_yes
 from instants import Instants
 from own_modules import OwnModules
-from scenario import Failed, Refused
+from scenario import Failed, Refused, short
 from task_file import TaskFile, check_class, check_helpers, check_participants
 
 
@@ -79,7 +79,7 @@ class _Course:
             stops = self.task.stop.value(moment)
             self.stop_known |= stops == stops
             if says_yes(stops):
-                self.failure = f"stopped in stage {self.name()}: {self.task.stop.text}"
+                self.failure = f"stopped in stage {self.name()}: {short(self.task.stop.text)}"
                 return
         now = self.task.stages[self.stage]
         done = now["until"].value(moment)
@@ -96,14 +96,14 @@ class _Course:
             self._fail_late(now["at_most_s"])
 
     def _fail_late(self, limit_s):
-        text = self.task.stages[self.stage]["until"].text
+        text = short(self.task.stages[self.stage]["until"].text)
         self.failure = f"stage {self.name()} not done in {limit_s:g} s" + ("" if self.until_known else f": {text} was no number at the end")
 
     def measures(self, step_s):
         if self.stage < len(self.task.stages) and self.failure is None:
             self._fail_late(self.task.seconds)
         if self.failure is None and self.task.stop is not None and not self.stop_known:
-            self.failure = f"the stopping rule was no number at any moment: {self.task.stop.text}"
+            self.failure = f"the stopping rule was no number at any moment: {short(self.task.stop.text)}"
         absent = {}
         out = {"success": self.failure is None, **self.ends, "failure": self.failure, "absent": absent}
         if self.failure is None:
@@ -114,7 +114,7 @@ class _Course:
             if value is not None:
                 out[m["name"]] = value
             elif rows:
-                absent[m["name"]] = f"{m['of'].text} was no number at any moment, as where it divides by zero"
+                absent[m["name"]] = f"{short(m['of'].text)} was no number at any moment, as where it divides by zero"
             else:
                 absent[m["name"]] = f"stage {m['stage']} was not reached" if m["stage"] else "no moment was judged"
         return out

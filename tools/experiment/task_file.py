@@ -5,9 +5,9 @@ import os
 import re
 
 import files_read
-from formulas import Formula
+from formulas import Formula, says_yes
 from own_modules import COMMON
-from scenario import Refused, Setting, check_keys, read, text_of, _number, _word_of
+from scenario import Refused, Setting, check_keys, read, short, text_of, _number, _word_of
 
 STATISTICS = ("last", "first", "mean", "rms", "min", "max", "ever", "share", "duration")
 IN_WORDS = {"last": "the last", "first": "the first", "mean": "the mean of", "rms": "the root mean square of", "min": "the least", "max": "the largest",
@@ -55,17 +55,19 @@ class TaskFile:
         self._read_numbers(_table(f"{path}: task.numbers", task.get("numbers", {})))
         self._read_stages(_tables(f"{path}: stages", data.get("stages", [])))
         self.stop = self._formula(f"{path}: task.stop", task["stop"]) if "stop" in task else None
+        if self.stop is not None and self.stop.constant() not in (None, 0):  # also what is no number: such a run fails
+            raise Refused(f"{path}: task.stop: found \"{short(self.stop.text)}\", which is always so or never known; accepted: a formula that can say no")
         self._read_measures(_tables(f"{path}: measures", data.get("measures", [])))
 
     def _read_files(self, task):
         path = self.path
         for key in ("scene", "controller"):
             if not isinstance(task.get(key), str):
-                raise Refused(f"{path}: task.{key}: found {task.get(key)!r}; accepted: a file's name")
+                raise Refused(f"{path}: task.{key}: found {short(repr(task.get(key)))}; accepted: a file's name")
         folder = os.path.dirname(os.path.abspath(path))
         self.scene, self.controller = (os.path.join(folder, task[k]) for k in ("scene", "controller"))
         if not isinstance(task.get("player", ""), str):
-            raise Refused(f"{path}: task.player: found {task['player']!r}; accepted: a file's name")
+            raise Refused(f"{path}: task.player: found {short(repr(task['player']))}; accepted: a file's name")
         self.player = os.path.join(folder, task["player"]) if "player" in task else None
         for key, file in (("scene", self.scene), ("controller", self.controller), ("player", self.player or self.scene)):
             if not os.path.isfile(file):
@@ -77,7 +79,7 @@ class TaskFile:
         for name, at in tables.items():
             self._things.add(f"{path}: task.places.{name}", name, "a place")
             if not isinstance(at, list) or len(at) != 3:
-                raise Refused(f"{path}: task.places.{name}: found {at!r}; accepted: [east, north, up] in metres")
+                raise Refused(f"{path}: task.places.{name}: found {short(repr(at))}; accepted: [east, north, up] in metres")
             self.places[name] = [float(_number(f"{path}: task.places.{name}", v, -4e7, 4e7)) for v in at]
 
     def _read_settings(self, tables):
@@ -91,13 +93,13 @@ class TaskFile:
             default = table.get("default")
             limits, words = table.get("limits", [-1e9, 1e9]), table.get("words")
             if not isinstance(limits, list) or len(limits) != 2:
-                raise Refused(f"{where}.limits: found {limits!r}; accepted: [lowest, highest]")
+                raise Refused(f"{where}.limits: found {short(repr(limits))}; accepted: [lowest, highest]")
             low = _number(f"{where}.limits", limits[0], -1e12, 1e12)
             high = _number(f"{where}.limits", limits[1], low, 1e12)
             if words is not None and not (isinstance(words, list) and all(isinstance(w, str) for w in words)):
-                raise Refused(f"{where}.words: found {words!r}; accepted: a list of words")
+                raise Refused(f"{where}.words: found {short(repr(words))}; accepted: a list of words")
             if not isinstance(default, (int, float, str)):
-                raise Refused(f"{where}.default: found {default!r}; accepted: a number, true, false or a word")
+                raise Refused(f"{where}.default: found {short(repr(default))}; accepted: a number, true, false or a word")
             self.SETTINGS[name] = Setting(default, text_of(where, table, "meaning"), low, high, words)
             self.SETTINGS[name].check(f"{where}.default", default)
 
@@ -109,7 +111,7 @@ class TaskFile:
             for name in names:
                 self._numbers.add(f"{self.path}: task.{key}", name, f"a number of the {who}")
             if names and self.player is None:
-                raise Refused(f"{self.path}: task.{key}: found {names!r} without a player; accepted: task.player, a .py file that "
+                raise Refused(f"{self.path}: task.{key}: found {short(repr(names))} without a player; accepted: task.player, a .py file that "
                               + ("tells them: a controller does not judge itself" if key == "tells" else "hears them"))
 
     def _read_numbers(self, tables):
@@ -133,13 +135,26 @@ class TaskFile:
             where = f"{path}: stages[{i}]"
             check_keys(where, stage, ["name", "until", "held_s", "at_most_s"])
             if not isinstance(stage.get("name"), str):
-                raise Refused(f"{where}.name: found {stage.get('name')!r}; accepted: a word")
+                raise Refused(f"{where}.name: found {short(repr(stage.get('name')))}; accepted: a word")
             self._results.add(f"{where}.name", f"{stage['name']}_s", "how long a stage took", stage["name"])
             self.stages.append({"name": stage["name"], "until": self._formula(f"{where}.until", stage.get("until")),
                                 "held_s": _number(f"{where}.held_s", stage.get("held_s", 0), 0, MOST_SECONDS),
                                 "at_most_s": _number(f"{where}.at_most_s", stage.get("at_most_s", self.seconds), 0, MOST_SECONDS)})
+            self._check_possible(where, self.stages[-1])
         if not self.stages:
             raise Refused(f"{path}: stages: found none; accepted: one or more")
+        held_s = sum(s["held_s"] for s in self.stages)
+        if held_s >= self.seconds:
+            raise Refused(f"{path}: task.seconds: found {self.seconds:g}, but the stages' held_s are {held_s:g} together; accepted: a longer run")
+
+    def _check_possible(self, where, stage):
+        """Refuses a stage that no run could end."""
+        if stage["held_s"] > stage["at_most_s"]:
+            raise Refused(f"{where}.held_s: found {stage['held_s']:g} of at most {stage['at_most_s']:g} s (at_most_s, or task.seconds); accepted: "
+                          "no more than that")
+        value = stage["until"].constant()
+        if value is not None and not says_yes(value):
+            raise Refused(f"{where}.until: found \"{short(stage['until'].text)}\", which is never so; accepted: a formula that can say yes")
 
     def _read_measures(self, tables):
         path = self.path
@@ -152,11 +167,11 @@ class TaskFile:
             check_keys(where, measure, ["name", "of", "statistic", "stage", "unit", "meaning"])
             statistic, stage = measure.get("statistic", "mean"), measure.get("stage")
             if not isinstance(measure.get("name"), str):
-                raise Refused(f"{where}.name: found {measure.get('name')!r}; accepted: a word")
+                raise Refused(f"{where}.name: found {short(repr(measure.get('name')))}; accepted: a word")
             self._results.add(f"{where}.name", measure["name"], "a measure")
             _word_of(f"{where}.statistic", statistic, STATISTICS)
             if stage is not None and stage not in [s["name"] for s in self.stages]:
-                raise Refused(f"{where}.stage: found {stage!r}; accepted: {', '.join(s['name'] for s in self.stages)}")
+                raise Refused(f"{where}.stage: found {short(repr(stage))}; accepted: {', '.join(s['name'] for s in self.stages)}")
             self.measures.append({"name": measure["name"], "of": self._formula(f"{where}.of", measure.get("of")),
                                   "statistic": statistic, "stage": stage})
             own_unit = "share of the time" if statistic == "share" else ""
@@ -168,19 +183,19 @@ class TaskFile:
     def _words(self, key, task):
         names = task.get(key, [])
         if not isinstance(names, list) or not all(isinstance(n, str) for n in names):
-            raise Refused(f"{self.path}: task.{key}: found {names!r}; accepted: a list of words")
+            raise Refused(f"{self.path}: task.{key}: found {short(repr(names))}; accepted: a list of words")
         return names
 
 
 def _table(where, value):
     if not isinstance(value, dict):
-        raise Refused(f"{where}: found {value!r}; accepted: a table")
+        raise Refused(f"{where}: found {short(repr(value))}; accepted: a table")
     return value
 
 
 def _tables(where, value):
     if not isinstance(value, list):
-        raise Refused(f"{where}: found {value!r}; accepted: tables, each [[{where.split()[-1]}]]")
+        raise Refused(f"{where}: found {short(repr(value))}; accepted: tables, each [[{where.split()[-1]}]]")
     return value
 
 
@@ -194,7 +209,7 @@ def check_participants(scene, participants, formulas=()):
     for formula in formulas:
         for signal, name in formula.bodies:
             if names.get(name, "vehicles" if name.startswith("vehicle_") else "") == "vehicles":
-                raise Refused(f"{formula.where}: found {signal}({name}) in \"{formula.text}\", but {name} is a vehicle; accepted: a diver "
+                raise Refused(f"{formula.where}: found {signal}({name}) in \"{short(formula.text)}\", but {name} is a vehicle; accepted: a diver "
                               "with a human's body")
 
 
