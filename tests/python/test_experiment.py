@@ -178,8 +178,7 @@ class Runs(unittest.TestCase):
 
     def test_each_is_a_failed_run_and_the_others_go_on(self):
         for workers in (1, 2):
-            with tempfile.TemporaryDirectory() as out, tempfile.TemporaryDirectory() as scratch, \
-                    unittest.mock.patch.object(tempfile, "tempdir", scratch):
+            with tempfile.TemporaryDirectory() as out:
                 results = self.run_all(out, range(1, 9), workers)
                 causes = [r["failure"] for r in results]
                 self.assertEqual([r["measures"] for r in results], [{"m": s} if s in (1, 8) else {} for s in range(1, 9)])
@@ -189,7 +188,7 @@ class Runs(unittest.TestCase):
                 self.assertRegex(causes[3], r"^ValueError: two lines \(")
                 self.assertEqual(causes[4:6], ["did not end within 3 s of the clock (run_limit_s)"] * 2)
                 self.assertIn("killed by SIGKILL", causes[6])
-                self.assertEqual(os.listdir(scratch), [])  # what the runs wrote is gone
+                self.assertEqual(os.listdir(out), ["runs.jsonl"])  # what the runs wrote is gone
                 # Those that gave nothing are made anew by --resume; the others stay as they ended.
                 again = self.run_all(out, range(1, 9), workers, resume=True, run=lambda settings, seed, tools: ({"m": 10 * seed}, {}))
                 self.assertEqual([r["measures"]["m"] for r in again], [1, 20, 30, 40, 50, 60, 70, 8])
@@ -282,6 +281,32 @@ print([r["measures"] for r in results])
         self.assertEqual((done.stdout, done.stderr.count("a line of the controller"), done.stderr.count("a line of its program")),
                          ("[{'m': 1}, {'m': 8}]\n", 2, 2), done.stderr)
 
+    def test_what_a_kill_left_is_removed_by_the_next_call(self):
+        code = f"""import sys
+sys.path.insert(0, {HERE!r})
+out, sys.argv[1:] = sys.argv[1], []
+import os, signal, test_experiment
+def killed(settings, seed, tools):
+    open(os.path.join(tools.folder, "recording"), "w").close()
+    os.kill(os.getppid(), signal.SIGKILL)
+    while True:
+        signal.pause()
+test_experiment.Runs().run_all(out, [1], 1, run=killed)
+"""
+        with tempfile.TemporaryDirectory() as out:
+            done = subprocess.run([sys.executable, "-B", "-c", code, out], capture_output=True, text=True, timeout=60)
+            self.assertEqual(done.returncode, -signal.SIGKILL, done.stderr)
+            pathlib.Path(out, "runs.jsonl.1.tmp").touch()
+            pathlib.Path(out, "mine").touch()
+            self.assertTrue(os.path.isfile(os.path.join(out, runner.SCRATCH, "0", "recording")))
+            for _ in range(100):  # until its worker has ended too, which holds the lock
+                try:
+                    self.assertEqual(self.run_all(out, [1], 1, resume=True)[0]["measures"], {"m": 1})
+                    break
+                except scenario.Refused:
+                    time.sleep(0.1)
+            self.assertEqual(sorted(os.listdir(out)), ["mine", "runs.jsonl"])
+
     def test_runs_are_counted_as_kept_once_they_are_on_the_disk(self):
         def full_after(n, real=os.fsync):
             written = []
@@ -312,14 +337,13 @@ class Endings(unittest.TestCase):
     the signals held back."""
 
     def begin(self, scratch):
-        os.mkdir(os.path.join(scratch, "temporary"))
         program = pathlib.Path(scratch, "program")
         program.write_text(f"#!/bin/sh\necho $$ >> '{scratch}/running'\nexec sleep 1000\n")
         program.chmod(0o755)
         return subprocess.Popen([sys.executable, "-B", TOOLS, "echo_sounder", "--out", os.path.join(scratch, "out"), "--program", str(program),
                                  "--workers", "2"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                                 preexec_fn=lambda: signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]),
-                                env=os.environ | {"TMPDIR": os.path.join(scratch, "temporary")})
+                                env=os.environ | {"TMPDIR": "/nowhere"})
 
     def wait_for(self, what):
         until = time.monotonic() + 60
@@ -332,11 +356,11 @@ class Endings(unittest.TestCase):
             with tempfile.TemporaryDirectory() as scratch:
                 run, running = self.begin(scratch), pathlib.Path(scratch, "running")
                 self.wait_for(lambda: running.exists() and running.read_text().count("\n") == 2)
-                self.assertEqual(len(os.listdir(os.path.join(scratch, "temporary"))), 1)
+                self.assertGreaterEqual(len(os.listdir(os.path.join(scratch, "out", runner.SCRATCH))), 1)
                 run.send_signal(number)
                 told = run.communicate(timeout=60)[0]
                 self.assertEqual((run.returncode, told), (128 + number, "neritic: experiment: interrupted; finished runs are kept, --resume goes on\n"))
-                self.assertEqual(os.listdir(os.path.join(scratch, "temporary")), [])
+                self.assertFalse(os.path.exists(os.path.join(scratch, "out", runner.SCRATCH)))
                 for pid in running.read_text().split():
                     self.wait_for(lambda: not os.path.exists(f"/proc/{pid}"))
 
@@ -350,7 +374,7 @@ class Endings(unittest.TestCase):
                 self.assertEqual(run.returncode, 130, told)
                 self.assertRegex(told, r"^neritic: experiment: interrupted.*\n$")
                 self.assertEqual(told.count("\n"), 1, told)
-                self.assertEqual(os.listdir(os.path.join(scratch, "temporary")), [])
+                self.assertFalse(os.path.exists(os.path.join(scratch, "out", runner.SCRATCH)))
 
 
 class Files(unittest.TestCase):

@@ -7,6 +7,7 @@ ends or does not return within the scenario's run_limit_s is a failed run; the o
 import collections
 import ctypes
 import fcntl
+import glob
 import json
 import math
 import multiprocessing
@@ -17,7 +18,6 @@ import resource
 import shutil
 import signal
 import sys
-import tempfile
 import time
 import traceback
 
@@ -28,6 +28,7 @@ import files_read
 from scenario import Failed, Refused
 
 FORMAT = 3
+SCRATCH = ".neritic_scratch"  # in OUT: a folder a run, removed after it
 GRACE_S = 5.0  # for a run that is stopped to close what it opened
 PERSON_GRACE_S = 40.0  # of a person's dive, whose recording is ended
 PR_SET_PDEATHSIG = 1  # linux/prctl.h
@@ -191,6 +192,7 @@ def run_all(scenario, out, program, workers, resume, quiet):
 
 def _run_all(scenario, out, program, workers, resume, quiet):
     path = os.path.join(out, "runs.jsonl")
+    _remove_left(out, path)
     runs = scenario.list_runs()
     head = {"format": FORMAT, "scenario": scenario.name, "kind": scenario.kind_name, "fingerprint": scenario.fingerprint(),
             "program": files_read.of_program(program)}
@@ -234,6 +236,13 @@ def _run_all(scenario, out, program, workers, resume, quiet):
         made.close()
         progress.end()
     return [kept[r.key()] for r in runs]
+
+
+def _remove_left(out, path):
+    """What an experiment left that was killed; out is locked, so none writes there."""
+    shutil.rmtree(os.path.join(out, SCRATCH), ignore_errors=True)
+    for left in glob.glob(f"{glob.escape(path)}.*.tmp"):
+        os.remove(left)
 
 
 class _Worker:
@@ -337,10 +346,11 @@ def _results(do, runs, program, workers, out, limit_s, grace_s):
     waiting, pool = collections.deque(enumerate(runs)), []
     if not waiting:
         return
+    base = os.path.join(os.path.abspath(out), SCRATCH)
     try:
-        base = tempfile.mkdtemp(prefix="neritic_experiment_")
+        os.mkdir(base)
     except OSError as error:
-        raise Failed(f"{tempfile.gettempdir()}: cannot be written: {error.strerror}") from None
+        raise Failed(f"{out}: cannot be written: {error.strerror}") from None
     try:
         for _ in range(max(1, min(workers, len(runs)))):
             pool.append(_Worker(do, program, out, grace_s))
