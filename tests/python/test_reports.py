@@ -312,6 +312,21 @@ class Figures(unittest.TestCase):
                 self.assertNotIn("folders", told)
                 self.assertEqual("The first 12 of 14 conditions" in alt, len(conditions) > 12)
             self.assertIn("The first 4 of 5 measures", made["task.png"][1])
+            fig, alt, _ = made["outcome.png"]
+            for told in (alt, " ".join(t.get_text().replace("\n", " ") for t in fig.texts)):
+                self.assertIn("A dot is a run, a thick bar the median. Of shares, the dot is the share, the line its 95 % interval. "
+                              "Red, dashed: a criterion's limit.", told)
+        # Only of marks that there are; all of it within the figure.
+        for measures, limit, words in ((("success",), {"at_least": 1}, "A dot with a line is a share and its 95 % interval. Red, dashed: a criterion's limit."),
+                                       (("far_0_m",), {"at_most": 1, "less": {"a": 1}}, "A dot is a run, a thick bar the median.")):
+            scenario.criteria = [{"measure": m, **limit} for m in measures]
+            fig, alt, _ = self.drawn(lambda *a: task_figures.figures(plan, *a), scenario, [{}], {"t": [0.0, 1.0], **{f"far_{i}_m": [1.0, None] for i in range(5)}},
+                                     lambda seed: {"success": True, "far_0_m": 0.1 * seed})["outcome.png"]
+            self.assertTrue(alt.endswith(words), alt)
+            told, = fig.texts
+            box = told.get_window_extent(fig.canvas.get_renderer())
+            self.assertTrue(0 <= box.x0 and box.x1 <= fig.bbox.x1 and 0 <= box.y0, box)
+            self.assertLess(box.y1, min(ax.xaxis.label.get_window_extent().y0 for ax in fig.axes))
 
     def test_a_measure_of_a_stage_is_drawn_in_that_stage_alone(self):
         import task_figures

@@ -186,7 +186,7 @@ def _calibration(ax, right, sure, style):
     ax.plot([0, 1], [0, 1], color=style.INK, lw=0.9, ls="--")
     ax.set_xlim(0.2, 1.02)
     ax.set_ylim(0, 1.09)
-    ax.set_xlabel("how sure it says it is")
+    ax.set_xlabel("how sure it says it is (dashed: as it should be)")
     ax.set_ylabel("share that is right")
     style.title(ax, f"Calibration: {100 * error:.1f} % off on average")
 

@@ -235,5 +235,5 @@ def figures(scenario, results, style):
         ax.axhline(bound, color=style.INK, lw=0.9, ls="--")
         ax.set_ylim(min(0.8, min(r["measures"][name] for r in done) - 0.02), 1.01)
         ax.set_xlabel("range of the diver, m")
-        style.title(ax, words)
+        style.title(ax, f"{words} (dashed: {bound:g})")
     yield "imaging.png", "Nearest ranges of the diver by sonar and by ray caster, and their agreement over runs", fig

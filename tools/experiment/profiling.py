@@ -211,10 +211,12 @@ def _errors(ax, runs, style):
     for name, dx, hue in (("rmse_m", -0.2, style.BLUE), ("bias_m", 0.2, style.ORANGE)):
         ax.bar(np.arange(len(runs)) + dx, [1000 * r["measures"][name] for r in runs], 0.38, color=hue,
                edgecolor=style.INK, lw=0.6, label=name.removesuffix("_m"), hatch="//" if dx > 0 else None)
-    ax.axhline(50, color=style.INK, lw=0.9, ls="--")
+    swell = any(r["settings"]["floor"] == "waves" for r in runs)
+    if swell:
+        ax.axhline(50, color=style.INK, lw=0.9, ls="--")
     ax.set_xticks(np.arange(len(runs)), names, rotation=0 if len(runs) < 5 else 90)
     ax.set_ylabel("error of the chart, mm")
-    style.title(ax, "Chart")
+    style.title(ax, "Chart (dashed: 50 mm)" if swell else "Chart")
     style.legend(ax)
 
 

@@ -147,5 +147,6 @@ def _power(ax, groups, spread, style):
     ax.axhline(0.8, color=style.INK, lw=0.9, ls="--")
     ax.set_xlim(n[0] / 1.4, n[-1] * 1.4)
     ax.set_ylim(0, 1.03)
+    words[0] += "; dashed: 80 %"
     ax.set_xlabel("\n".join(words))
     style.title(ax, "Power to tell 10 % more time (marks: by draws)")

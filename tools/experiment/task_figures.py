@@ -1,11 +1,14 @@
 """The figures of a task's report: the measures of the criteria by condition, and each run's measures over time, a stage's in that
 stage alone."""
+import textwrap
+
 import numpy as np
 
 import intervals
 import report
 import summary
 
+FOOT = 150  # characters of a line at the foot of 900 pixels
 MOST, ACROSS, RUNS, MEASURES, JUDGED = 12, 4, 30, 4, 6  # conditions, panels in a row, runs a panel; measures of each figure
 
 
@@ -15,8 +18,9 @@ def figures(task, scenario, results, style):
     judged = list(dict.fromkeys(c["measure"] for c in scenario.criteria))
     if judged:
         told = [report.left_out(MOST, len(groups), "conditions"), report.left_out(JUDGED, len(judged), "measures")]
-        yield "outcome.png", " ".join(["The measures of the criteria by condition.", *filter(None, told)]), \
-            _outcomes(task, scenario, judged[:JUDGED], groups[:MOST], names, told, style)
+        marks = _marks(task, scenario, judged[:JUDGED])
+        yield "outcome.png", " ".join(["The measures of the criteria by condition.", marks, *filter(None, told)]), \
+            _outcomes(task, scenario, judged[:JUDGED], groups[:MOST], names, [marks, *told], style)
     over_time = [m for m in task.measures if m["statistic"] not in ("ever", "duration", "share")]
     if not over_time or not any(r["series"] for r in results):
         return
@@ -61,11 +65,23 @@ def _over_time(task, shown, groups, names, told, style):
     return fig
 
 
+def _marks(task, scenario, judged):
+    """What the marks of the outcomes' figure mean, of those that it has."""
+    share = [task.MEASURES[name][0] == "yes or no" for name in judged]
+    drawn = [c for c in scenario.criteria if c["measure"] in judged and "less" not in c]
+    return " ".join(filter(None, [
+        "" if all(share) else "A dot is a run, a thick bar the median.",
+        ("A dot with a line is a share and its 95 % interval." if all(share) else "Of shares, the dot is the share, the line its 95 % interval.")
+        if any(share) else "",
+        "Red, dashed: a criterion's limit." if drawn else ""]))
+
+
 def _tell(fig, told, style):
-    """What is left out, at the foot."""
-    height = fig.get_size_inches()[1] * style.DPI
-    if any(told):
-        fig.text(24 / (fig.get_size_inches()[0] * style.DPI), 8 / height, " ".join(filter(None, told)), size=8, color=style.INK)
+    """What the marks mean and what is left out, at the foot, a line each FOOT characters or less."""
+    width, height = (v * style.DPI for v in fig.get_size_inches())
+    lines = textwrap.wrap(" ".join(filter(None, told)), int(FOOT * width / 900))
+    if lines:
+        fig.text(24 / width, 8 / height, "\n".join(lines), size=8, color=style.INK, va="bottom")
 
 
 def _words(task, name):
@@ -97,7 +113,9 @@ def _outcomes(task, scenario, judged, groups, names, told, style):
     labels = [n.replace(", ", ",\n") if len(n) > 26 else n for n in names[:len(groups)]]  # a factor a line where they are long
     tall = max(60, sum(14 + 12 * (n.count("\n") + 1) for n in labels))
     room = min(180, 20 + 6 * max(len(part) for n in labels for part in n.split("\n"))) if len(groups) > 1 else 40
-    fig = style.figure(900 if len(judged) > 1 else 470, 40 + (tall + 85) * down)
+    wide = 900 if len(judged) > 1 else 470
+    lines = len(textwrap.wrap(" ".join(filter(None, told)), int(FOOT * wide / 900)))
+    fig = style.figure(wide, 40 + (tall + 85) * down + 13 * lines)
     for i, name in enumerate(judged):
         left, top = room + 440 * (i % 2), 40 + (tall + 85) * (i // 2)
         ax = style.area(fig, left, top, 430 + 440 * (i % 2), top + tall)
