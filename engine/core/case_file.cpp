@@ -127,15 +127,19 @@ double CaseField::number(double fallback, double least, double most) const {
 }
 
 std::vector<double> CaseField::numbers() const {
+  return finite_numbers("a list of numbers");
+}
+
+std::vector<double> CaseField::finite_numbers(std::string_view accepted) const {
   std::vector<double> out;
   if (!present()) return out;
   if (!value_->is_array()) {
-    refuse("a list of numbers");
+    refuse(accepted);
     return out;
   }
   for (const nlohmann::json& item : *value_) {
     if (!item.is_number() || !std::isfinite(item.get<double>())) {
-      refuse_entry(item, out.size(), "a list of numbers");
+      refuse_entry(item, out.size(), accepted);
       return {};
     }
     out.push_back(item.get<double>());
@@ -145,8 +149,9 @@ std::vector<double> CaseField::numbers() const {
 
 std::vector<double> CaseField::numbers(std::size_t count) const {
   if (!present()) return {};
-  if (value_->is_array() && value_->size() == count) return numbers();
-  refuse(fmt::format("a list of {} numbers", count));
+  const std::string accepted = fmt::format("a list of {} numbers", count);
+  if (value_->is_array() && value_->size() == count) return finite_numbers(accepted);
+  refuse(accepted);
   return {};
 }
 

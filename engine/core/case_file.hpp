@@ -99,6 +99,7 @@ class CaseField {
 
   // Records "field: found F; accepted: A".
   void refuse(std::string_view accepted) const;
+  std::vector<double> finite_numbers(std::string_view accepted) const;
   void refuse_entry(const nlohmann::json& entry, std::size_t i, std::string_view accepted) const;
   void fail(const std::string& message) const { file_->fail(path_, message); }
 

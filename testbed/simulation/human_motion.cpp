@@ -143,8 +143,8 @@ std::uint64_t moved_parts(const DiverInputs& inputs, bool head, bool hands, bool
   return parts;
 }
 
-// Which source has a joint: tracked hands bring the arms along, a tracked head in its place the
-// spine; the rest is the body's.
+// Which source has a joint: a tracked head in its place brings the spine along; the rest is the
+// body's.
 SourcesOfJoints sources_of_joints(const DiverInputs& inputs, bool head, bool hands) {
   SourcesOfJoints out;
   out.fill(kBodySource);
@@ -155,9 +155,11 @@ SourcesOfJoints sources_of_joints(const DiverInputs& inputs, bool head, bool han
   if (head) give(kHeadSource, {kHead});
   if (head && (inputs.head.placed & kHeadPlaced)) give(kHeadSource, {kAbdomen, kThorax});
   if (!hands) return out;
-  give(kHandsSource, {kLeftHand, kRightHand});
-  if (inputs.hands_by_pose == 0) return out;
-  give(kHandsSource, {kLeftUpperArm, kLeftForearm, kRightUpperArm, kRightForearm});
+  if (inputs.hands_by_pose == 0)
+    give(kHandsSource, {kLeftHand, kRightHand});
+  else
+    give(kPosed,
+         {kLeftUpperArm, kLeftForearm, kLeftHand, kRightUpperArm, kRightForearm, kRightHand});
   return out;
 }
 

@@ -69,7 +69,7 @@ std::uint64_t note_jumps(JointEase& ease, const diver::JointRotations& last,
   std::uint64_t jumped = 0;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const LimbSource source = source_of[i];
-    if ((fresh >> source & 1) == 0) continue;
+    if (source == kPosed || (fresh >> source & 1) == 0) continue;
     const bool wrist =
         i == diver::joint_of(diver::kLeftHand) || i == diver::joint_of(diver::kRightHand);
     const double most_rad = way_s[source] > 0.0

@@ -33,9 +33,10 @@ inline constexpr double kShortestWay_s = 1.0 / 60.0, kLongestWay_s = 1.0 / 30.0;
 // A source that is silent for so long, and for kGapPeriods of its periods, begins anew.
 inline constexpr double kGap_s = 0.1, kGapPeriods = 5.0;
 
-// The sources of limbs, and the times between their samples.
-enum LimbSource : std::size_t { kBodySource, kHeadSource, kHandsSource };
-inline constexpr std::size_t kLimbSources = 3;
+// The sources of limbs, and the times between their samples. kPosed: arms that inverse kinematics
+// bring to tracked hands; an elbow may turn over at once while the hand stays where it is tracked.
+enum LimbSource : std::size_t { kBodySource, kHeadSource, kHandsSource, kPosed };
+inline constexpr std::size_t kLimbSources = 3;  // that are watched for jumps
 struct SourcePace {
   double since_s = 0.0, period_s = 0.0;  // since the newest sample; before it. 0: none yet
 

@@ -164,7 +164,7 @@ TEST(RovCaseFile, FaultsAreSaidInOneLine) {
        "D_Q_diag: found [1,2]; accepted: a list of 6 numbers"},
       {"/scenarios/0/params/D_Q_diag", "[-1, 0, 0, 0, 0, 0]", "quadratic_damping: found -1"},
       {"/scenarios/0/samples/0/p_ned", "[1, null, 3]",
-       "samples[0].p_ned: found [1,null,3]; accepted: a li"},
+       "samples[0].p_ned: found null as entry 1; accepted: a list of 3 numbers"},
       {"/scenarios/0/samples/0", "{\"t\": 1}",
        "samples[0]: found nothing to compare; accepted: p_ned"},
       {"/scenarios/0/thruster_mode", "\"warp\"",
