@@ -6,14 +6,6 @@
 namespace neritic::rov {
 namespace {
 
-// log of a rotation as the vector that it turns about, radians.
-Vec3 rotation_vector(Quat q) {
-  if (q.w < 0.0) q = -q;
-  const Vec3 v(q.x, q.y, q.z);
-  const double n = glm::length(v);
-  return n < 1e-12 ? 2.0 * v : 2.0 * std::atan2(n, q.w) / n * v;
-}
-
 // Roll and pitch left as they are, at another heading.
 Quat with_heading(const Quat& attitude, double heading_rad) {
   return heading_attitude(heading_rad - heading_of(attitude)) * attitude;
@@ -65,6 +57,13 @@ ControlGains default_gains() {
 
 Quat heading_attitude(double heading_rad) {
   return {std::cos(0.5 * heading_rad), 0.0, 0.0, std::sin(0.5 * heading_rad)};
+}
+
+Vec3 rotation_vector(Quat q) {
+  if (q.w < 0.0) q = -q;
+  const Vec3 v(q.x, q.y, q.z);
+  const double n = glm::length(v);
+  return n < 1e-12 ? 2.0 * v : 2.0 * std::atan2(n, q.w) / n * v;
 }
 
 double heading_of(const Quat& q) {

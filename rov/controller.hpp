@@ -80,5 +80,7 @@ Setpoint heading_hold(const State& state, const Vec6& pilot);
 // Rotation about down, positive from north to east; and that of an attitude.
 Quat heading_attitude(double heading_rad);
 double heading_of(const Quat& attitude);
+// The shorter rotation as its axis times its angle, rad.
+Vec3 rotation_vector(Quat rotation);
 
 }  // namespace neritic::rov

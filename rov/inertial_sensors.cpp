@@ -5,6 +5,34 @@
 #include "rov/controller.hpp"
 
 namespace neritic::rov {
+namespace {
+
+ImuReading with_noise(const Imu& imu, const Vec3& angular_rad_s, const Vec3& force_m_s2,
+                      const NoiseSource& noise, std::uint64_t sample) {
+  const Quat sensor_from_body = glm::conjugate(imu.mount.rotation);
+  return {sensor_from_body * angular_rad_s + noise.error3(imu.gyro, 0, sample, imu.rate_hz),
+          sensor_from_body * force_m_s2 + noise.error3(imu.accelerometer, 3, sample, imu.rate_hz)};
+}
+
+}  // namespace
+
+InertialMotion inertial_motion(const Imu& imu, const State& state, double time_s) {
+  const Vec3 moving =
+      state.velocity.linear() + glm::cross(state.velocity.angular(), imu.mount.position_m);
+  return {time_s, state.attitude, state.attitude * moving};
+}
+
+ImuReading mean_imu(const Imu& imu, const InertialMotion& from, const InertialMotion& to,
+                    const NoiseSource& noise, std::uint64_t sample) {
+  const double dt_s = to.time_s - from.time_s;
+  const Vec3 turned = rotation_vector(glm::conjugate(from.attitude) * to.attitude);
+  const double angle = glm::length(turned);
+  const Quat half_way =
+      angle > 0.0 ? from.attitude * glm::angleAxis(0.5 * angle, turned / angle) : from.attitude;
+  const Vec3 force_ned =
+      (to.velocity_ned_m_s - from.velocity_ned_m_s) / dt_s - Vec3(0.0, 0.0, imu.gravity_m_s2);
+  return with_noise(imu, turned / dt_s, glm::conjugate(half_way) * force_ned, noise, sample);
+}
 
 ImuReading read_imu(const Imu& imu, const Vehicle& vehicle, const State& state, const Vec6& contact,
                     const NoiseSource& noise, std::uint64_t sample) {
@@ -15,10 +43,7 @@ ImuReading read_imu(const Imu& imu, const Vehicle& vehicle, const State& state, 
   const Vec3 acceleration = rate.linear() + glm::cross(w, state.velocity.linear()) +
                             glm::cross(turning, r) + glm::cross(w, glm::cross(w, r));
   const Vec3 gravity = glm::conjugate(state.attitude) * Vec3(0.0, 0.0, imu.gravity_m_s2);
-  const Quat sensor_from_body = glm::conjugate(imu.mount.rotation);
-  return {sensor_from_body * w + noise.error3(imu.gyro, 0, sample, imu.rate_hz),
-          sensor_from_body * (acceleration - gravity) +
-              noise.error3(imu.accelerometer, 3, sample, imu.rate_hz)};
+  return with_noise(imu, w, acceleration - gravity, noise, sample);
 }
 
 double SensorWater::pressure_pa(double depth_m) const {

@@ -31,6 +31,27 @@ struct ImuReading {
     field("specific_force_m_s2", self.specific_force_m_s2);
   }
 };
+// Where a unit was in its motion when it read: its next reading is the mean from there.
+struct InertialMotion {
+  double time_s = 0.0;
+  Quat attitude{1.0, 0.0, 0.0, 0.0};  // ned_from_body
+  Vec3 velocity_ned_m_s{0.0};         // of the unit itself
+  static void fields(auto&& field, auto& self) {
+    field("time_s", self.time_s);
+    field("attitude", self.attitude);
+    field("velocity_ned_m_s", self.velocity_ned_m_s);
+  }
+};
+InertialMotion inertial_motion(const Imu& imu, const State& state, double time_s);
+
+// The mean from one instant to another, as units deliver it that integrate both (Savage 1998,
+// "Strapdown inertial navigation integration algorithm design", coning and sculling taken off): the
+// rotation vector between the attitudes over the time; and the change of velocity over the time,
+// less gravity, in axes turned half the way. However short a jolt is, it is in the reading.
+// Precondition: to is later than from.
+ImuReading mean_imu(const Imu& imu, const InertialMotion& from, const InertialMotion& to,
+                    const NoiseSource& noise, std::uint64_t sample);
+// The same at an instant, as a unit's first reading is.
 // contact: the rate of the velocity that contacts make, linear and angular, body axes; beside what
 // water, weight and thrusters do at the state, which follow from it.
 ImuReading read_imu(const Imu& imu, const Vehicle& vehicle, const State& state, const Vec6& contact,

@@ -58,6 +58,24 @@ void carry(const NavigationModel& model, double time_s, NavigationState& state) 
     coast(state, silent_s, dt_s);
 }
 
+// Moves the state to time_s by the inertial unit's next reading. It is the mean since the last:
+// where the state was carried into that time by the last one, the rest of it remains.
+void move_on(const NavigationModel& model, const ImuReading& next, double time_s,
+             NavigationState& state) {
+  const double dt_s = time_s - state.time_s, whole_s = time_s - state.imu_s;
+  ImuReading rest = next;
+  if (dt_s > 0.0 && dt_s < whole_s && whole_s <= kHeldPeriods / model.imu.rate_hz) {
+    const auto left = [&](const Vec3& mean, const Vec3& carried) {
+      return mean + ((whole_s - dt_s) / dt_s) * (mean - carried);
+    };
+    rest = {left(next.angular_rad_s, state.imu.angular_rad_s),
+            left(next.specific_force_m_s2, state.imu.specific_force_m_s2)};
+  }
+  move(state, rest, model.imu.gravity_m_s2, dt_s);
+  state.imu = next;
+  state.imu_s = std::max(state.imu_s, time_s);
+}
+
 // Levels the state by its inertial reading, whatever it was before.
 void level(const NavigationModel& model, NavigationState& state) {
   move_covariance(state, model.motion);
@@ -218,8 +236,7 @@ void update_navigation(const NavigationModel& model, const SensorReadings& readi
         state.imu = next;
         level(model, state);
       }
-      move(state, next, model.imu.gravity_m_s2, time_s - state.time_s);
-      state.imu_s = std::max(state.imu_s, time_s);
+      move_on(model, next, time_s, state);
     } else {
       ++state.imu_refused;
     }

@@ -174,12 +174,9 @@ Quat rotation_by(const Vec3& angle) {
   return {std::cos(half), share * angle.x, share * angle.y, share * angle.z};
 }
 
-void move(NavigationState& state, const ImuReading& next, double gravity_m_s2, double dt_s) {
-  const Vec3 turning =
-      0.5 * (state.imu.angular_rad_s + next.angular_rad_s) - state.bias3(kGyroBias);
-  const Vec3 force = 0.5 * (state.imu.specific_force_m_s2 + next.specific_force_m_s2) -
-                     state.bias3(kAccelerometerBias);
-  state.imu = next;
+void move(NavigationState& state, const ImuReading& mean, double gravity_m_s2, double dt_s) {
+  const Vec3 turning = mean.angular_rad_s - state.bias3(kGyroBias);
+  const Vec3 force = mean.specific_force_m_s2 - state.bias3(kAccelerometerBias);
   if (!(dt_s > 0.0) || !std::isfinite(dt_s)) return;
   const Quat half_way = state.attitude * rotation_by(0.5 * dt_s * turning);
   const Vec3 gained = dt_s * (half_way * force);

@@ -20,10 +20,9 @@ struct MotionNoise {
   std::array<double, kErrors - kFirstBias> walk{};  // of the biases, their unit squared a second
 };
 
-// Moves attitude, velocity and position by dt_s with the mean of the state's inertial reading and
-// the next, which becomes the state's: body axes, biases included. Nothing moves where dt_s is not
-// above 0.
-void move(NavigationState& state, const ImuReading& next, double gravity_m_s2, double dt_s);
+// Moves attitude, velocity and position by dt_s with the mean inertial reading of that time: body
+// axes, biases included. Nothing moves where dt_s is not above 0.
+void move(NavigationState& state, const ImuReading& mean, double gravity_m_s2, double dt_s);
 // The same without a reading, silent_s after the last: the vehicle neither turns nor accelerates,
 // as far as is known. It may have turned by 0.5 rad/s, tilted by 0.05 rad/s and gained 0.5 m/s a
 // second since.

@@ -1,6 +1,6 @@
 #include "rov/sensor_set.hpp"
 
-#include <algorithm>
+#include <utility>
 
 namespace neritic::rov {
 namespace {
@@ -21,42 +21,20 @@ void update(const std::optional<Sensor>& sensor, const SensorWorld& world, Strea
   ++reading.count;
 }
 
-// Contacts' mean rate over the time up to the sample that is due in (from_s, to_s], what is left of
-// this step being the next sample's; or nothing yet, where none is.
-Vec6 mean_contact(const std::optional<Imu>& imu, const Vec6& contact, double from_s, double to_s,
-                  SensorReadings& readings) {
-  if (!imu) return {};
-  const auto add = [&](double s) {
-    readings.contact_change = readings.contact_change + s * contact;
-    readings.contact_s += s;
-  };
-  const auto sample = sample_due(imu->rate_hz, from_s, to_s);
-  if (!sample) {
-    add(to_s - from_s);
-    return {};
-  }
-  const double after_s =
-      std::clamp(to_s - static_cast<double>(*sample) / imu->rate_hz, 0.0, to_s - from_s);
-  add(to_s - from_s - after_s);
-  const Vec6 mean =
-      readings.contact_s > 0.0 ? (1.0 / readings.contact_s) * readings.contact_change : contact;
-  readings.contact_change = {};
-  readings.contact_s = 0.0;
-  add(after_s);
-  return mean;
-}
-
 }  // namespace
 
 void update_readings(const SensorSet& sensors, const SensorWorld& world, const Vehicle& vehicle,
                      const State& state, const Vec6& contact, double from_s, double to_s,
                      SensorReadings& readings) {
-  const Vec6 felt = mean_contact(sensors.imu, contact, from_s, to_s, readings);
   const auto with = [&](const auto& sensor, Stream stream, auto& reading, const auto& read) {
     update(sensor, world, stream, from_s, to_s, reading, read);
   };
   with(sensors.imu, kImu, readings.imu, [&](const Imu& s, const NoiseSource& n, std::uint64_t k) {
-    return read_imu(s, vehicle, state, felt, n, k);
+    const InertialMotion now = inertial_motion(s, state, to_s);
+    const InertialMotion from = std::exchange(readings.imu_from, now);
+    return readings.imu.count > 0 && from.time_s < to_s
+               ? mean_imu(s, from, now, n, k)
+               : read_imu(s, vehicle, state, contact, n, k);
   });
   with(sensors.dvl, kDvl, readings.dvl, [&](const Dvl& s, const NoiseSource& n, std::uint64_t k) {
     return read_dvl(s, world.water, state, world.rays, n, k);

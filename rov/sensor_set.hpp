@@ -39,9 +39,8 @@ struct SensorReadings {
   Reading<double> heading_rad;
   Reading<AltimeterReading> altimeter;
   Reading<UsblReading> usbl;
-  // The change of velocity by contacts since the inertial unit's last reading, and its duration.
-  Vec6 contact_change;
-  double contact_s = 0.0;
+  // The inertial unit's motion at its last reading.
+  InertialMotion imu_from;
   static void fields(auto&& field, auto& self) {
     field("imu", self.imu);
     field("dvl", self.dvl);
@@ -49,8 +48,7 @@ struct SensorReadings {
     field("heading_rad", self.heading_rad);
     field("altimeter", self.altimeter);
     field("usbl", self.usbl);
-    field("contact_change", self.contact_change);
-    field("contact_s", self.contact_s);
+    field("imu_from", self.imu_from);
   }
 };
 
@@ -61,9 +59,10 @@ struct SensorWorld {
   SensorWater water{};
 };
 
-// Replaces the readings of the sensors that are due in (from_s, to_s], of the state at to_s.
-// contact: the rate of the velocity by contacts in that time, body axes. The inertial unit reads
-// its mean since its last sample, so that no hit is missed or felt twice, whatever its rate.
+// Replaces the readings of the sensors that are due in (from_s, to_s], of the state at to_s. The
+// inertial unit reads means since the state that it read last, so that no jolt is missed or felt
+// twice, whatever its rate. contact: the rate of the velocity by contacts in that time, body axes,
+// for its first reading.
 void update_readings(const SensorSet& sensors, const SensorWorld& world, const Vehicle& vehicle,
                      const State& state, const Vec6& contact, double from_s, double to_s,
                      SensorReadings& readings);

@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <utility>
 
 #include "rov/bluerov2.hpp"
 #include "rov/controller.hpp"
+#include "rov/navigation_filter.hpp"
 #include "rov/sensor_set.hpp"
 #include "rov/step.hpp"
 #include "tests/rov/random_vehicle.hpp"
@@ -55,6 +57,53 @@ TEST(RovSensor, ImuIsTheSecondDerivativeOfItsPlace) {
   const ImuReading read = read_imu(imu, vehicle, now, {}, {}, 0);
   EXPECT_LT(glm::length(read.specific_force_m_s2 - expected), 1e-4);
   EXPECT_LT(glm::length(imu.mount.rotation * read.angular_rad_s - now.velocity.angular()), 1e-12);
+}
+
+// Jolts between samples, and within a step: the readings add up to the turn and to the change of
+// velocity, whatever the unit's rate is to the steps'.
+TEST(RovSensor, ImuReadingsAddUpToTheMotionThroughJolts) {
+  const Vehicle vehicle = heavy_vehicle();
+  for (const double rate_hz : {37.0, 60.0, 120.0, 200.0, 240.0, 1000.0}) {
+    SensorSet sensors;
+    sensors.imu = Imu{.rate_hz = rate_hz};
+    sensors.imu->mount = {{0.3, -0.2, 0.1}, glm::angleAxis(0.7, glm::normalize(Vec3(1, 2, 3)))};
+    const Quat body_from_sensor = sensors.imu->mount.rotation;
+    Draws draws(8);
+    State state = random_state(draws, 0.3);
+    SensorReadings readings;
+    update_readings(sensors, {}, vehicle, state, {}, -1.0, 0.0, readings);
+    const auto at = [&](const State& s) {
+      return s.attitude * (s.velocity.linear() +
+                           glm::cross(s.velocity.angular(), sensors.imu->mount.position_m));
+    };
+    Quat attitude = state.attitude;
+    Vec3 velocity = at(state);
+    double read_s = 0.0;
+    std::uint64_t seen = readings.imu.count;
+    State read = state;
+    for (int i = 1; i <= 480; ++i) {
+      state = step(vehicle, state, {}, 1.0 / 240.0);
+      if (i % 31 == 0) {  // as a contact ends within a step
+        state.velocity = state.velocity + vec6(Vec3(0.2, -0.1, 0.3), Vec3(-0.5, 0.8, 0.2));
+        state.attitude = state.attitude * rotation_by({0.002, -0.001, 0.003});
+      }
+      const double now_s = i / 240.0;
+      update_readings(sensors, {}, vehicle, state, {}, (i - 1) / 240.0, now_s, readings);
+      if (std::exchange(seen, readings.imu.count) == readings.imu.count) continue;
+      const ImuReading& imu = readings.imu.value;
+      const double dt_s = now_s - std::exchange(read_s, now_s);
+      const Vec3 turned = dt_s * (body_from_sensor * imu.angular_rad_s);
+      const Quat half_way = attitude * rotation_by(0.5 * turned);
+      velocity +=
+          dt_s * (half_way * body_from_sensor * imu.specific_force_m_s2 + Vec3(0.0, 0.0, 9.82));
+      attitude = attitude * rotation_by(turned);
+      read = state;
+    }
+    EXPECT_GT(readings.imu.count, 70u);
+    EXPECT_LT(glm::length(rotation_vector(glm::conjugate(attitude) * read.attitude)), 1e-10)
+        << rate_hz;
+    EXPECT_LT(glm::distance(velocity, at(read)), 1e-10) << rate_hz;
+  }
 }
 
 TEST(RovSensor, PressureIsThatOfItsDepth) {
