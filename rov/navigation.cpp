@@ -7,19 +7,25 @@
 
 #include "rov/controller.hpp"
 #include "rov/navigation_measurements.hpp"
+#include "rov/navigation_start.hpp"
 
 namespace neritic::rov {
 namespace {
 
-// The standard deviation of the attitude before the first measurement.
-constexpr double kUnknown_rad = 1.0;
 // Beyond these no reading is one: what the devices can measure (16 g, 2000 degrees a second), the
 // deepest sea, and speeds that no vehicle has.
 constexpr double kMostForce_m_s2 = 160.0, kMostTurning_rad_s = 35.0;
-constexpr double kMostSpeed_m_s = 50.0, kMostDepth_m = 12e3, kMostFix_m = 1e7;
-// Rejections over this time, and at least this number, before a sensor is believed again.
+constexpr double kMostDepth_m = 12e3, kMostFix_m = 1e7;
+// Rejections over this time, and at least this number, before a sensor is believed again: a DVL
+// that locks onto something that moves errs for seconds.
 constexpr double kPatience_s = 10.0;
 constexpr double kLeastPatience = 5.0;
+// After this number of fixes that are rejected, or this time of depths, the navigation is lost: an
+// echo is not five times in a row, and a depth has no echo.
+constexpr std::uint64_t kLostFixes = 5;
+constexpr double kLostDepth_s = 5.0;
+// The position is known so well where it begins anew, before the fix that it is taken from.
+constexpr double kAnewSigma_m = 1e3;
 
 // An inertial reading holds for this number of periods.
 constexpr double kHeldPeriods = 4.0;
@@ -76,13 +82,6 @@ void move_on(const NavigationModel& model, const ImuReading& next, double time_s
   state.imu_s = std::max(state.imu_s, time_s);
 }
 
-// Levels the state by its inertial reading, whatever it was before.
-void level(const NavigationModel& model, NavigationState& state) {
-  move_covariance(state, model.motion);
-  AidTally levelled;
-  correct(state, level_measurement(model, state), levelled, 0);
-}
-
 class Corrections {
  public:
   Corrections(const NavigationModel& model, double time_s, NavigationState& state)
@@ -92,6 +91,11 @@ class Corrections {
   bool refuse(Aid aid, bool good) {
     if (!good) ++tally(aid).refused;
     return !good;
+  }
+  // Whether the navigation is lost: this reading would be the last of so many that are rejected.
+  bool lost(Aid aid, std::uint64_t most, const Measurement& measurement) {
+    return tally(aid).rejected_in_a_row + 1 >= most &&
+           normalized_innovation_squared(state_, measurement) > outlier_bound(measurement.count);
   }
   // Carries the state to the time of the readings, before it is compared with one.
   void prepare() {
@@ -120,12 +124,38 @@ void correct_by_dvl(const NavigationModel& model, const DvlReading& reading, Cor
   }
 }
 
-void correct_by_fix(const NavigationModel& model, const UsblReading& reading, double age_s,
-                    Corrections& out, const NavigationState& state) {
+void correct_by_fix(const NavigationModel& model, const SensorReadings& readings, double age_s,
+                    Corrections& out, NavigationState& state) {
+  const UsblReading& reading = readings.usbl.value;
   if (reading.heard == 0) return;
   if (out.refuse(Aid::kUsbl, is_finite_within(reading.position_ned_m, kMostFix_m))) return;
   out.prepare();
+  if (out.lost(Aid::kUsbl, kLostFixes, fix_measurement(model, state, reading, age_s))) {
+    begin_anew(model, readings, kAnewSigma_m, state);
+    state.position_ned_m = reading.position_ned_m -
+                           state.attitude * (model.usbl->beacon_m - model.imu.mount.position_m);
+  }
   out.apply(Aid::kUsbl, model.usbl->rate_hz, fix_measurement(model, state, reading, age_s));
+}
+
+void correct_by_depth(const NavigationModel& model, const SensorReadings& readings,
+                      Corrections& out, NavigationState& state) {
+  const double depth_m = readings.pressure.value.depth_m, rate_hz = model.pressure->rate_hz;
+  if (out.refuse(Aid::kPressure, std::abs(depth_m) <= kMostDepth_m)) return;
+  out.prepare();
+  const auto most = static_cast<std::uint64_t>(
+      std::max(static_cast<double>(kLostFixes), std::ceil(kLostDepth_s * rate_hz)));
+  if (out.lost(Aid::kPressure, most, depth_measurement(model, state, depth_m))) {
+    // As far as it may have gone off since a depth was right; the next fix finds it.
+    const double since_s = std::max(0.0, state.time_s - state.of(Aid::kPressure).accepted_s);
+    const double off_m = (glm::length(state.velocity_ned_m_s) + kAnewSigma_m_s) * since_s +
+                         glm::length(state.sigma3(kPositionError));
+    begin_anew(model, readings, std::min(off_m, kAnewSigma_m), state);
+    state.position_ned_m.z =
+        depth_m -
+        (state.attitude * (model.pressure->mount.position_m - model.imu.mount.position_m)).z;
+  }
+  out.apply(Aid::kPressure, rate_hz, depth_measurement(model, state, depth_m));
 }
 
 // All but the inertial unit's.
@@ -134,13 +164,8 @@ void correct_by_new(const NavigationModel& model, const SensorReadings& readings
   Corrections out(model, time_s, state);
   if (model.dvl && fresh(readings.dvl, state.dvl_used))
     correct_by_dvl(model, readings.dvl.value, out, state);
-  if (model.pressure && fresh(readings.pressure, state.pressure_used)) {
-    const double depth_m = readings.pressure.value.depth_m;
-    if (!out.refuse(Aid::kPressure, std::abs(depth_m) <= kMostDepth_m)) {
-      out.prepare();
-      out.apply(Aid::kPressure, model.pressure->rate_hz, depth_measurement(model, state, depth_m));
-    }
-  }
+  if (model.pressure && fresh(readings.pressure, state.pressure_used))
+    correct_by_depth(model, readings, out, state);
   if (model.compass && fresh(readings.heading_rad, state.compass_used)) {
     const double heading = readings.heading_rad.value;
     if (!out.refuse(Aid::kCompass, std::abs(heading) <= 10.0 * kPi) && has_heading(state)) {
@@ -170,7 +195,7 @@ void correct_by_arrived(const NavigationModel& model, const SensorReadings& read
       std::clamp(readings.usbl.time_s + late_s, std::min(state.time_s, time_s), time_s);
   Corrections out(model, at_s, state);
   const double age_s = std::clamp(at_s - readings.usbl.time_s, 0.0, 1.0 / model.usbl->rate_hz);
-  correct_by_fix(model, readings.usbl.value, age_s, out, state);
+  correct_by_fix(model, readings, age_s, out, state);
 }
 
 }  // namespace
@@ -190,26 +215,11 @@ NavigationState start_navigation(const NavigationModel& model, const SensorReadi
                     is_finite_within(first.angular_rad_s, kMostTurning_rad_s);
   if (felt) state.imu = first;
   state.imu_used = readings.imu.count;
-  // Groves 2013, eq. 5.101: roll and pitch of a body that feels gravity alone.
-  const Vec3 f = state.imu.specific_force_m_s2;
-  const double roll = felt ? std::atan2(-f.y, -f.z) : 0.0;
-  const double pitch = felt ? std::atan2(f.x, std::hypot(f.y, f.z)) : 0.0;
-  const double read = readings.heading_rad.value;
-  const double heading =
-      model.compass && readings.heading_rad.count > 0 && std::abs(read) <= 10.0 * kPi
-          ? read + model.compass->declination_rad
-          : 0.0;
-  state.attitude = heading_attitude(heading) * glm::angleAxis(pitch, Vec3(0.0, 1.0, 0.0)) *
-                   glm::angleAxis(roll, Vec3(1.0, 0.0, 0.0));
+  const double heading = heading_by(model, readings).value_or(0.0);
+  state.attitude =
+      felt ? levelled(state.imu.specific_force_m_s2, heading) : heading_attitude(heading);
   state.position_ned_m = launch_ned_m + state.attitude * model.imu.mount.position_m;
-  for (std::size_t i = 0; i < 3; ++i) {
-    state.covariance.set(kAttitudeError + i, kAttitudeError + i, kUnknown_rad * kUnknown_rad);
-    state.covariance.set(kVelocityError + i, kVelocityError + i,
-                         kLaunchSigma_m_s * kLaunchSigma_m_s);
-    state.covariance.set(kPositionError + i, kPositionError + i, kLaunchSigma_m * kLaunchSigma_m);
-  }
-  for (std::size_t i = kFirstBias; i < kErrors; ++i)
-    state.covariance.set(i, i, model.bias_variance[i - kFirstBias]);
+  know_only(model, kLaunchSigma_m_s, kLaunchSigma_m, state);
   // The attitude is the readings' own: their innovations are 0 here, and leave what it has to do
   // with the sensors' biases.
   if (felt) level(model, state);

@@ -13,6 +13,12 @@ using Column = std::array<double, kErrors>;
 // velocity, position, biases.
 constexpr double kMostSigma[] = {kPi, 1e3, 1e6, 1e3};
 
+// What a wrong attitude makes of the force beyond first order stays much the same for this time: as
+// a noise it is so wide that it adds up to as much.
+constexpr double kBent_s = 1.0;
+// A reading is of no shorter time than this, even if the state was carried up to its end before.
+constexpr double kLeastBent_s = 1e-3;
+
 Square full(const Covariance& p) {
   Square out;
   for (std::size_t i = 0; i < kErrors; ++i)
@@ -167,6 +173,22 @@ void doubt(NavigationState& state, const Measurement& m) {
 
 }  // namespace
 
+double second_order(const NavigationState& state, const Vec3& v_ned) {
+  // |e x (e x v)|^2 = (e . e) (e . A e), A = |v|^2 I - v v^T, whose mean over normal errors of
+  // covariance P is tr(P) tr(A P) + 2 tr(A P P).
+  Mat3 p;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      p[j][i] = state.covariance(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+  const Vec3 pv = p * v_ned;
+  const double trace = p[0][0] + p[1][1] + p[2][2], square = glm::dot(v_ned, v_ned);
+  double of_square = 0.0;  // tr(P P)
+  for (int i = 0; i < 3; ++i) of_square += glm::dot(p[i], p[i]);
+  const double mean = trace * (square * trace - glm::dot(v_ned, pv)) +
+                      2.0 * (square * of_square - glm::dot(pv, pv));
+  return 0.5 * std::sqrt(std::max(0.0, mean));
+}
+
 Quat rotation_by(const Vec3& angle) {
   const double half = 0.5 * glm::length(angle);
   // sin(x) / x to second order near 0, exact to rounding there.
@@ -257,13 +279,16 @@ void move_covariance(NavigationState& state, const MotionNoise& noise) {
         if (k != i) p[j][i] += moved[j][k] * f[i][k];
     for (std::size_t j = kFirstBias; j < kErrors; ++j) p[j][i] = moved[i][j];
   }
+  const double bent_m_s = second_order(state, state.pending_ned_m_s);
+  const double force =
+      noise.accelerometer + bent_m_s * bent_m_s * kBent_s / (t * std::max(t, kLeastBent_s));
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t v = kVelocityError + i, x = kPositionError + i;
     p[kAttitudeError + i][kAttitudeError + i] += noise.gyro * t;
-    p[v][v] += noise.accelerometer * t;
-    p[v][x] += noise.accelerometer * t * t / 2.0;
-    p[x][v] += noise.accelerometer * t * t / 2.0;
-    p[x][x] += noise.accelerometer * t * t * t / 3.0;
+    p[v][v] += force * t;
+    p[v][x] += force * t * t / 2.0;
+    p[x][v] += force * t * t / 2.0;
+    p[x][x] += force * t * t * t / 3.0;
   }
   for (std::size_t i = kFirstBias; i < kErrors; ++i) p[i][i] += noise.walk[i - kFirstBias] * t;
   store(p, state.covariance);

@@ -33,6 +33,13 @@ void coast(NavigationState& state, double silent_s, double dt_s);
 using Transition = std::array<std::array<double, kBeamBias>, kFirstBias>;
 Transition transition(const NavigationState& state);
 
+// How far a vector that is known in body axes may be off in NED, beyond the first order of the
+// attitude's error e: the root mean square of e x (e x v) / 2, of normal errors (Bar-Shalom, Li,
+// Kirubarajan 2001, section 10.3.2). Negligible below some degrees; of an attitude that is hardly
+// known it keeps the first precise measurement from being taken for more than it tells.
+// Precondition: as of the covariance's time.
+double second_order(const NavigationState& state, const Vec3& v_ned);
+
 // Moves the covariance to the state's time.
 void move_covariance(NavigationState& state, const MotionNoise& noise);
 

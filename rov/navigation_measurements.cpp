@@ -8,7 +8,8 @@
 namespace neritic::rov {
 namespace {
 
-// How much a vehicle may accelerate while it is levelled; and between a fix and its arrival.
+// How much a vehicle is taken to accelerate while it is levelled; and between a fix and its
+// arrival.
 constexpr double kStartAcceleration_m_s2 = 0.2, kFixAcceleration_m_s2 = 0.3;
 // Above this depth a pressure sensor may be out of the water, where it reads 0.
 constexpr double kWet_m = 0.1;
@@ -23,6 +24,10 @@ Vec3 offset_ned(const NavigationModel& model, const NavigationState& state, cons
   return state.attitude * (body_m - model.imu.mount.position_m);
 }
 
+double squared(double x) {
+  return x * x;
+}
+
 double wrapped(double angle) {
   return std::remainder(angle, 2.0 * kPi);
 }
@@ -35,8 +40,14 @@ Measurement level_measurement(const NavigationModel& model, const NavigationStat
   const Vec3 up(0.0, 0.0, -model.imu.gravity_m_s2);
   const Vec3 force = state.imu.specific_force_m_s2;
   const Vec3 expected = body_from_ned * up + state.bias3(kAccelerometerBias);
-  const double odd = glm::length(force) - model.imu.gravity_m_s2;
+  // A force that is not gravity's says that it accelerates: upright by the difference, level by the
+  // root of that of the squares.
+  const double gravity = model.imu.gravity_m_s2;
+  const double odd = std::abs(glm::length(force) - gravity);
+  const double level_square =
+      odd > kStartAcceleration_m_s2 ? std::abs(glm::dot(force, force) - gravity * gravity) : 0.0;
   const double variance = kStartAcceleration_m_s2 * kStartAcceleration_m_s2 + odd * odd +
+                          level_square +
                           model.imu.accelerometer.white * model.imu.accelerometer.white;
   Measurement out;
   out.count = 3;
@@ -75,7 +86,8 @@ Measurement beam_measurement(const NavigationModel& model, const NavigationState
   out.change[0][kBeamScale] = speed;
   out.change[0][kBeamBias + beam] = 1.0;
   const double gyro = model.imu.gyro.white * glm::length(arm);
-  out.noise[0][0] = beam_variance(dvl, expected) + gyro * gyro;
+  out.noise[0][0] = beam_variance(dvl, expected) + gyro * gyro +
+                    squared(second_order(state, state.velocity_ned_m_s));
   return out;
 }
 
@@ -99,7 +111,8 @@ Measurement depth_measurement(const NavigationModel& model, const NavigationStat
   const double both = state.covariance(z, kPressureScale);
   const double product =
       state.covariance(kPressureScale, kPressureScale) * state.covariance(z, z) + both * both;
-  out.noise[0][0] = depth_variance(sensor) + product + (depth_m < kWet_m ? kWet_m * kWet_m : 0.0);
+  out.noise[0][0] = depth_variance(sensor) + product + squared(second_order(state, arm)) +
+                    (depth_m < kWet_m ? kWet_m * kWet_m : 0.0);
   return out;
 }
 
@@ -126,7 +139,10 @@ Measurement heading_measurement(const NavigationModel& model, const NavigationSt
   put(out.change[0], kAttitudeError,
       by_heading * Vec3(-bow.z * bow.x / level, -bow.z * bow.y / level, 1.0));
   put(out.change[0], kCompassBias, {1.0, sine, cosine});
-  out.noise[0][0] = compass_variance(compass);
+  // A tilt that is hardly known turns the heading to second order too, by the product of its two
+  // parts.
+  const double tilt_variance = 0.5 * (state.covariance(0, 0) + state.covariance(1, 1));
+  out.noise[0][0] = compass_variance(compass) + squared(tilt_variance);
   return out;
 }
 
@@ -146,11 +162,11 @@ Measurement fix_measurement(const NavigationModel& model, const NavigationState&
   const double along_m = bias[0] + range * state.bias[kRangeScale - kFirstBias];
   const Vec3 error = along_m * out_along + range * (bias[1] * across + bias[2] * steeper);
   const Vec3 innovation = reading.position_ned_m - expected - error;
-  const auto square = [](double x) { return x * x; };
-  const double along_variance = square(usbl.range_noise.white) + square(kLeastRange_m);
+  const double bent = squared(second_order(state, arm)) + squared(kLeastRange_m);
+  const double along_variance = squared(usbl.range_noise.white) + bent;
   const double across_variance =
-      square(range) * (square(usbl.direction_noise.white) + square(kLeastAngle_rad * 0.1)) +
-      square(kLeastRange_m);
+      squared(range) * (squared(usbl.direction_noise.white) + squared(kLeastAngle_rad * 0.1)) +
+      bent;
   const double moved = 0.5 * kFixAcceleration_m_s2 * age_s * age_s;
   Measurement out;
   out.count = 3;

@@ -89,6 +89,9 @@ struct NavigationState {
   ImuReading imu;
   double imu_s = 0.0;
   std::uint64_t imu_refused = 0;
+  // How many times it was lost and began anew, and when it last did.
+  std::uint64_t begun_anew = 0;
+  double begun_anew_s = 0.0;
   std::array<AidTally, kAids> aids;
   // Number of each sensor's last reading that was taken in.
   std::uint64_t imu_used = 0, dvl_used = 0, pressure_used = 0, compass_used = 0, usbl_used = 0;
@@ -116,6 +119,8 @@ struct NavigationState {
     field("imu", self.imu);
     field("imu_s", self.imu_s);
     field("imu_refused", self.imu_refused);
+    field("begun_anew", self.begun_anew);
+    field("begun_anew_s", self.begun_anew_s);
     field("aids", self.aids);
     field("imu_used", self.imu_used);
     field("dvl_used", self.dvl_used);

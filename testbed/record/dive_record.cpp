@@ -108,6 +108,9 @@ void DiveRecorder::add(const sim::Snapshot<PhysicsState>& snapshot) {
       figures.navigation_error_m = glm::distance(estimate->position_ned_m, now.body.position_ned_m);
       figures.largest_navigation_error_m =
           std::max(figures.largest_navigation_error_m.value_or(0.0), *figures.navigation_error_m);
+      if (begun_ && world_.navigation(snapshot.state, i)->begun_anew >
+                        world_.navigation(last_, i)->begun_anew)
+        figures.navigation_anew_s.push_back(snapshot.time_s);
     }
     if (const rov::BatteryState* battery = world_.battery(snapshot.state, i)) {
       figures.battery_charge = battery->charge;

@@ -42,6 +42,7 @@ struct DiveFigures {
   std::optional<double> battery_empty_from_s;
   // For a vehicle that flies by its own sensors: the distance from its estimated position.
   std::optional<double> navigation_error_m, largest_navigation_error_m;
+  std::vector<double> navigation_anew_s;  // when that was lost and began anew
 };
 
 // Each list in the order of time.

@@ -140,18 +140,85 @@ TEST(RovNavigationFault, FixesByMultipathAreRejected) {
   EXPECT_LT(error_of(run, 60.0), error_of(clean, 60.0) + 0.2);
 }
 
-// The vehicle is somewhere else than its navigation takes it to be: after ten fixes it believes
+// The vehicle is somewhere else than its navigation takes it to be: after five fixes it believes
 // them.
 TEST(RovNavigationFault, FixesThatStayAwayAreBelievedInTheEnd) {
   const Vec3 away(30.0, -20.0, 0.0);
   const SensorFault elsewhere = [&](SensorReadings& r, double t) {
     if (t > 10.0) r.usbl.value.position_ned_m += away;
   };
-  EXPECT_LT(error_of(flown(6, 18.0, elsewhere), 18.0), 1.0);
+  EXPECT_LT(error_of(flown(6, 14.0, elsewhere), 14.0), 1.0);
   const NavigationRun run = flown(6, 45.0, elsewhere);
   EXPECT_LT(glm::length(run.position_error(truth_after(45.0)) + away), 1.0);
-  EXPECT_GE(run.state.of(Aid::kUsbl).readmitted, 1u);
+  EXPECT_EQ(run.state.begun_anew, 1u);
+  EXPECT_GT(run.state.begun_anew_s, 13.0);
+  EXPECT_LT(run.state.begun_anew_s, 18.0);
   expect_positive(run.state.covariance);
+}
+
+// What goes on from a state that is wrong by 25 degrees and 2 m/s, and takes itself to be right.
+NavigationRun flown_lost(std::uint64_t seed, double seconds, const SensorSet& sensors) {
+  const auto& truth = circling(seconds);
+  NavigationRun run(sensors, seed, truth[0]);
+  const auto steps = static_cast<std::size_t>(seconds / kRunStep_s);
+  for (std::size_t k = 1; k <= steps; ++k) {
+    if (k == 2500) {
+      run.state.attitude = rotation_by({0.3, 0.3, 0.0}) * run.state.attitude;
+      run.state.velocity_ned_m_s += Vec3(2.0, 0.0, 0.0);
+    }
+    run.step(truth[k], static_cast<double>(k) * kRunStep_s);
+  }
+  return run;
+}
+
+TEST(RovNavigationFault, ALostNavigationBeginsAnewByItsFixes) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    const NavigationRun run = flown_lost(seed, 40.0, sensors_of(seed));
+    EXPECT_GE(run.state.begun_anew, 1u);
+    EXPECT_LT(run.state.begun_anew_s, 20.0);
+    EXPECT_LT(error_of(run, 40.0), 0.8);
+    EXPECT_LT(glm::length(run.velocity_error(truth_after(40.0))), 0.05);
+    EXPECT_LT(glm::length(run.attitude_error(truth_after(40.0))), radians(4.0));
+    EXPECT_LT(normalized_square(run.state, kPositionError, run.position_error(truth_after(40.0))),
+              16.0);
+    EXPECT_LT(normalized_square(run.state, kAttitudeError, run.attitude_error(truth_after(40.0))),
+              16.0);
+    expect_positive(run.state.covariance);
+  }
+}
+
+// Without fixes the depth tells that it is lost. Where it is then stays unknown, and it knows that.
+TEST(RovNavigationFault, ALostNavigationBeginsAnewByItsDepth) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    SensorSet sensors = sensors_of(seed);
+    sensors.usbl.reset();
+    const NavigationRun run = flown_lost(seed, 40.0, sensors);
+    EXPECT_GE(run.state.begun_anew, 1u);
+    EXPECT_LT(run.state.begun_anew_s, 20.0);
+    EXPECT_LT(glm::length(run.velocity_error(truth_after(40.0))), 0.05);
+    EXPECT_LT(glm::length(run.attitude_error(truth_after(40.0))), radians(4.0));
+    EXPECT_LT(std::abs(run.position_error(truth_after(40.0)).z), 0.1);
+    EXPECT_LT(normalized_square(run.state, kPositionError, run.position_error(truth_after(40.0))),
+              16.0);
+  }
+}
+
+// An emergency ascent, or a vehicle that is dropped: the force at the start is not gravity's.
+TEST(RovNavigationFault, StartedWhileItAcceleratesItKnowsThatItIsNotLevelled) {
+  const NavigationModel model = navigation_model(survey_file().sensors);
+  for (const Vec3& acceleration :
+       {Vec3(0, 0, -4), Vec3(0, 0, 3), Vec3(2, -1.5, 0), Vec3(3, 0, 2)}) {
+    SensorReadings readings;
+    readings.imu.count = 1;
+    readings.imu.value.specific_force_m_s2 = acceleration - Vec3(0.0, 0.0, 9.82);
+    const NavigationState state = start_navigation(model, readings, Vec3(0.0), 0.0);
+    const Quat& q = state.attitude;
+    const double off = 2.0 * std::hypot(q.x, q.y);
+    EXPECT_GT(2.5 * state.sigma3(kAttitudeError).x, off);
+    EXPECT_GT(state.sigma3(kAttitudeError).x, radians(10.0));
+  }
 }
 
 TEST(RovNavigationFault, ReadingsThatAreNoNumbersAreRefusedAndCounted) {

@@ -129,18 +129,47 @@ TEST(RovNavigationFilter, CovarianceMovesAsTheDenseMatrixProduct) {
   for (std::size_t i = 0; i < kFirstBias; ++i)
     for (std::size_t j = 0; j < kBeamBias; ++j) f[i][j] = t[i][j];
   Dense expected = times(times(f, dense(s.covariance)), transposed(f));
+  // The attitude is hardly known here: what is beyond first order acts for a second.
+  const double bent_m_s2 = second_order(s, s.pending_ned_m_s) / 0.2;
+  EXPECT_GT(bent_m_s2, 0.1);
+  const double force = 2e-3 + bent_m_s2 * bent_m_s2 * 1.0;
   for (std::size_t i = 0; i < 3; ++i) {
     expected[i][i] += 1e-4 * 0.2;
-    expected[3 + i][3 + i] += 2e-3 * 0.2;
-    expected[3 + i][6 + i] += 2e-3 * 0.2 * 0.2 / 2;
-    expected[6 + i][3 + i] += 2e-3 * 0.2 * 0.2 / 2;
-    expected[6 + i][6 + i] += 2e-3 * 0.2 * 0.2 * 0.2 / 3;
+    expected[3 + i][3 + i] += force * 0.2;
+    expected[3 + i][6 + i] += force * 0.2 * 0.2 / 2;
+    expected[6 + i][3 + i] += force * 0.2 * 0.2 / 2;
+    expected[6 + i][6 + i] += force * 0.2 * 0.2 * 0.2 / 3;
   }
   for (std::size_t i = 9; i < kErrors; ++i) expected[i][i] += noise.walk[i - 9] * 0.2;
   move_covariance(s, noise);
   for (std::size_t i = 0; i < kErrors; ++i)
     for (std::size_t j = 0; j < kErrors; ++j)
       EXPECT_NEAR(s.covariance(i, j), expected[i][j], 1e-14);
+}
+
+// Against the root mean square over random attitudes of what the first order leaves.
+TEST(RovNavigationFilter, TheSecondOrderOfAnAttitudeIsWhatTheFirstLeaves) {
+  Draws draws(35);
+  for (int n = 0; n < 10; ++n) {
+    NavigationState s;
+    const Vec3 sigma(draws.uniform(0.0, 0.3), draws.uniform(0.0, 0.3), draws.uniform(0.0, 0.3));
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double x = sigma[static_cast<int>(i)];
+      s.covariance.set(i, i, x * x);
+    }
+    const Vec3 v = draws.vec3(5.0);
+    double square = 0.0;
+    constexpr std::uint64_t kDraws = 20000;
+    for (std::uint64_t k = 0; k < kDraws; ++k) {
+      const RandomKey key{35, static_cast<std::uint64_t>(n), k};
+      const Vec3 e =
+          sigma * Vec3(random_normal(key, 0), random_normal(key, 1), random_normal(key, 2));
+      const Vec3 left = rotation_by(e) * v - v - glm::cross(e, v);
+      square += glm::dot(left, left) / kDraws;
+    }
+    EXPECT_LT(std::sqrt(square), 1.03 * second_order(s, v)) << n;
+    EXPECT_GT(std::sqrt(square), 0.9 * second_order(s, v)) << n;
+  }
 }
 
 // Measurements of every sensor, at random places, in random motion, with every arm and bias in it.

@@ -94,6 +94,7 @@ nlohmann::json vehicle_json(const PhysicsVehicle& vehicle, const VehicleState& s
           {"navigation", vehicle.navigation ? "measured" : "truth"},
           {"navigation_error_m", number_or_null(figures.navigation_error_m)},
           {"largest_navigation_error_m", number_or_null(figures.largest_navigation_error_m)},
+          {"navigation_begun_anew_s", figures.navigation_anew_s},
           {"end", {{"position_m", {p.x, p.y, p.z}}, {"rotation_xyzw", {q.x, q.y, q.z, q.w}}}}};
 }
 

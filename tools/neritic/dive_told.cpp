@@ -18,6 +18,15 @@ std::string touch_words(std::uint64_t steps) {
   return steps == 0 ? "touched nothing" : fmt::format("touched something in {} steps", steps);
 }
 
+// When a navigation was lost and began anew; empty: never.
+std::string lost_words(const std::vector<double>& anew_s) {
+  if (anew_s.empty()) return {};
+  return fmt::format("NAVIGATION LOST, begun anew at {:.1f} s{}, ", anew_s.front(),
+                     anew_s.size() == 1 ? std::string()
+                                        : fmt::format(" and {} times more, the last at {:.1f} s",
+                                                      anew_s.size() - 1, anew_s.back()));
+}
+
 std::string vehicle_line(const PhysicsVehicle& vehicle, const VehicleState& state,
                          const DiveFigures& figures) {
   std::string line = vehicle.name + ": ";
@@ -39,6 +48,7 @@ std::string vehicle_line(const PhysicsVehicle& vehicle, const VehicleState& stat
   if (figures.largest_navigation_error_m)
     line += fmt::format("navigation off by up to {:.2f} m ({:.2f} m at the end), ",
                         *figures.largest_navigation_error_m, *figures.navigation_error_m);
+  line += lost_words(figures.navigation_anew_s);
   if (figures.battery_empty_from_s)
     line += fmt::format("BATTERY EMPTY from {:.1f} s on, ", *figures.battery_empty_from_s);
   else if (figures.battery_charge)

@@ -5,8 +5,8 @@
 namespace neritic::testbed {
 namespace {
 
-// The survey vehicle sets down on a flat floor under its second waypoint, and pushes on towards
-// that; keys of its dynamics file follow.
+// The survey vehicle flies for 20 s, sets down on a flat floor under its second waypoint, and
+// pushes on towards that; keys of its dynamics file follow.
 TestDive setting_down(std::uint64_t seed, double speed_m_s, const std::string& dynamics_keys = {}) {
   const test::ScratchFolder folder;
   const std::string vehicles = vehicles_folder();
@@ -27,10 +27,11 @@ name = "rov"
 include = ")" + vehicles + R"(/rov.toml"
 dynamics = ")" + (folder / "survey.toml").string() +
                                                    R"("
-position_m = [0, -15, 0]
+position_m = [0, -15, )" + std::to_string(20.0 * speed_m_s - 10.0) +
+                                                   R"(]
 [vehicles.mission]
 speed_m_s = )" + std::to_string(speed_m_s) + R"(
-waypoints = [{position_m = [0, -15, -2]}, {position_m = [0, -18, -2]}]
+waypoints = [{position_m = [0, -15, -10]}, {position_m = [0, -18, -10]}]
 )")
                   .ok());
   auto scene = scene::load_scene(folder / "dive.toml");
@@ -80,7 +81,7 @@ TEST(NavigationContact, WhereItSetsDownItKnowsWhereItIs) {
     for (std::uint64_t seed = 11; seed <= 16; ++seed) {
       SCOPED_TRACE(seed);
       SCOPED_TRACE(speed_m_s);
-      const Off off = off_after(setting_down(seed, speed_m_s), 40.0);
+      const Off off = off_after(setting_down(seed, speed_m_s), 50.0);
       EXPECT_GT(off.touched_steps, 1000u);
       EXPECT_LT(off.most_m, 0.8);
       EXPECT_LT(off.most_m_s, 0.25);
@@ -97,7 +98,7 @@ TEST(NavigationContact, SoItDoesAtOtherRatesOfItsInertialUnit) {
       SCOPED_TRACE(seed);
       SCOPED_TRACE(rate_hz);
       const Off off = off_after(
-          setting_down(seed, 0.5, "[imu]\nrate_hz = " + std::to_string(rate_hz) + "\n"), 40.0);
+          setting_down(seed, 0.5, "[imu]\nrate_hz = " + std::to_string(rate_hz) + "\n"), 50.0);
       EXPECT_GT(off.touched_steps, 1000u);
       EXPECT_LT(off.most_m, 0.8);
       EXPECT_LT(off.most_square, 36.0);
