@@ -15,6 +15,8 @@ namespace {
 // Beyond these no reading is one: what the devices can measure (16 g, 2000 degrees a second), the
 // deepest sea, and speeds that no vehicle has.
 constexpr double kMostForce_m_s2 = 160.0, kMostTurning_rad_s = 35.0;
+// A reading beyond these is no jolt either, but a fault.
+constexpr double kMostJolt_m_s2 = 1e4, kMostJolt_rad_s = 1e3;
 constexpr double kMostDepth_m = 12e3, kMostFix_m = 1e7;
 // Rejections over this time, and at least this number, before a sensor is believed again: a DVL
 // that locks onto something that moves errs for seconds.
@@ -80,6 +82,31 @@ void move_on(const NavigationModel& model, const ImuReading& next, double time_s
   move(state, rest, model.imu.gravity_m_s2, dt_s);
   state.imu = next;
   state.imu_s = std::max(state.imu_s, time_s);
+}
+
+// After a jolt that is beyond what the inertial unit measures: the vehicle gained about what the
+// reading says, which is not used, and turned by a few degrees or what it says. How far the reading
+// can be relied on is an estimate: along it not at all, across it to 30 %.
+void doubt_jolt(const NavigationModel& model, const ImuReading& reading, NavigationState& state) {
+  constexpr double kAcross = 0.3, kTurned_rad = 0.05;
+  if (!is_finite_within(reading.specific_force_m_s2, kMostJolt_m_s2) ||
+      !is_finite_within(reading.angular_rad_s, kMostJolt_rad_s))
+    return;
+  move_covariance(state, model.motion);
+  const double period_s = 1.0 / model.imu.rate_hz;
+  const Vec3 gained = period_s * (state.attitude * reading.specific_force_m_s2);
+  const double across = kAcross * glm::length(gained);
+  const double turned = std::max(period_s * glm::length(reading.angular_rad_s), kTurned_rad);
+  const auto add = [&](std::size_t i, std::size_t j, double variance) {
+    state.covariance.set(i, j, state.covariance(i, j) + variance);
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    add(kAttitudeError + i, kAttitudeError + i, turned * turned);
+    add(kVelocityError + i, kVelocityError + i, across * across);
+    for (std::size_t j = i; j < 3; ++j)
+      add(kVelocityError + i, kVelocityError + j,
+          gained[static_cast<int>(i)] * gained[static_cast<int>(j)]);
+  }
 }
 
 class Corrections {
@@ -249,6 +276,7 @@ void update_navigation(const NavigationModel& model, const SensorReadings& readi
       move_on(model, next, time_s, state);
     } else {
       ++state.imu_refused;
+      doubt_jolt(model, next, state);
     }
   }
   correct_by_new(model, readings, time_s, state);
