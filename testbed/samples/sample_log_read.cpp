@@ -240,8 +240,9 @@ Status LogVisitor::sample(StreamId stream, std::span<const std::byte> bytes) {
     return {};
   }
   if (header.source >= log_.sources.size()) {
-    doubt_ = refusal(name_, fmt::format("sample {} of source {}", index, header.source),
-                     fmt::format("one of the {} sources before it", log_.sources.size()));
+    doubt_ =
+        refusal(name_, fmt::format("sample {} of source {}", index, header.source),
+                fmt::format("that of a source named before it, {} so far", log_.sources.size()));
     return {};
   }
   if (!plausible(header.captured_ns) || !plausible(header.arrived_ns))

@@ -155,26 +155,6 @@ TEST(JointEase, ASourceThatJumpsDoesNotThrowTheBodyAndIsCounted) {
     }
 }
 
-TEST(JointEase, TrackedHandsThatJumpAreEasedAndCounted) {
-  TestDive dive = dive_of(hover_text("hands = \"headset\""));
-  Device hands(dive, "headset", "diver/hand_poses");
-  const Quat none(1.0, 0.0, 0.0, 0.0);
-  const auto at = [&](double forward_m, double up_m) {
-    return [&hands, none, forward_m, up_m] {
-      hands.say(
-          HandPoses{{Pose{Vec3(-0.3, up_m, forward_m), none}, Pose{Vec3(0.3, 0.5, -0.3), none}},
-                    1 | kHandsRide});
-    };
-  };
-  thrown_in(dive, 3.0, at(-0.3, 0.5));
-  ASSERT_EQ(group(dive, DiverGroup::kHands).jumps, 0u);
-  const Thrown thrown = thrown_in(dive, 3.0, at(0.3, -0.1));
-  EXPECT_EQ(group(dive, DiverGroup::kHands).jumps, 1u);
-  EXPECT_EQ(group(dive, DiverGroup::kBody).jumps, 0u);
-  EXPECT_LT(thrown.joint_rad_s, 1.5 * kFastestEase_rad_s);
-  EXPECT_GT(thrown.joint_rad_s, 0.5);
-}
-
 // Elbows and knees faster than limbs go in water, by suits of several rates, with samples that are
 // lost one by one.
 TEST(JointEase, QuickMotionsPassUnchanged) {
