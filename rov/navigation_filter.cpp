@@ -13,8 +13,8 @@ using Column = std::array<double, kErrors>;
 // velocity, position, biases.
 constexpr double kMostSigma[] = {kPi, 1e3, 1e6, 1e3};
 
-// What a wrong attitude makes of the force beyond first order stays much the same for this time: as
-// a noise it is so wide that it adds up to as much.
+// The second-order effect of a wrong attitude on the force stays much the same for this time. As a
+// white noise it is made wide enough that it adds up to as much.
 constexpr double kBent_s = 1.0;
 // A reading is of no shorter time than this, even if the state was carried up to its end before.
 constexpr double kLeastBent_s = 1e-3;

@@ -143,8 +143,8 @@ std::uint64_t moved_parts(const DiverInputs& inputs, bool head, bool hands, bool
   return parts;
 }
 
-// Which source has a joint: a tracked head in its place brings the spine along; the rest is the
-// body's.
+// The source of each joint. A tracked head in its place also moves the spine; all other joints are
+// the body's.
 SourcesOfJoints sources_of_joints(const DiverInputs& inputs, bool head, bool hands) {
   SourcesOfJoints out;
   out.fill(kBodySource);

@@ -66,9 +66,10 @@ struct JointEase {
 // on where they are none. Unit quaternions; dt_s: of the step.
 void begin_ease(JointEase& ease, const diver::JointRotations& last,
                 const diver::JointRotations& joints, double dt_s);
-// Which sources jumped in this step, as bits of LimbSource: those of `fresh`, which have a new
-// sample, where a joint of theirs is farther off than limbs go. source_of: of each joint. To be
-// called once a step, with `live`, the bits of those that act.
+// Finds the sources that jumped in this step, as bits of LimbSource. A source jumps if it has a new
+// sample (its bit is in `fresh`) and one of its joints is farther off than limbs can move.
+// source_of: the source of each joint. Called once a step, with `live`, the bits of sources that
+// act.
 using SourcesOfJoints = std::array<LimbSource, diver::kJoints>;
 std::uint64_t note_jumps(JointEase& ease, const diver::JointRotations& last,
                          const diver::JointRotations& joints, const SourcesOfJoints& source_of,

@@ -156,7 +156,8 @@ TEST(RovNavigationFault, FixesThatStayAwayAreBelievedInTheEnd) {
   expect_positive(run.state.covariance);
 }
 
-// What goes on from a state that is wrong by 25 degrees and 2 m/s, and takes itself to be right.
+// A navigation that goes on from a state that is wrong by 25 degrees and 2 m/s, with a covariance
+// that says it is right.
 NavigationRun flown_lost(std::uint64_t seed, double seconds, const SensorSet& sensors) {
   const auto& truth = circling(seconds);
   NavigationRun run(sensors, seed, truth[0]);

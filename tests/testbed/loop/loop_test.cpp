@@ -239,7 +239,8 @@ TEST(LoopClock, ARealClockFollowsTheDisplayOrWaitsAndDropsWhatIsTooLate) {
 }
 
 // A display says when its pictures are seen; the scene's time is the run's, which never falls.
-// Its frames go on by the host's time after a second, and by the display's once that is ahead again.
+// Its frames go on by the host's time after a second, and by the display's once that is ahead
+// again.
 TEST(LoopClock, ADisplayWhoseTimeStandsDoesNotHoldTheFrames) {
   sim::HostClock host;
   Clock clock = Clock::real(5.0, 0.1);

@@ -87,8 +87,8 @@ TEST(SequenceTrack, ALargeGapCountsOnceTheNextNumberFollowsIt) {
   EXPECT_EQ(track.take(70'000, 0).verdict, kRepeated);
 }
 
-// What a link with loss, repeats and jitter makes of numbers that were captured a millisecond
-// apart.
+// Numbers of samples captured a millisecond apart, as they arrive over a link with loss, repeats
+// and jitter.
 struct Sent {
   std::uint64_t number = 0;
   TimeNs captured_ns = 0;

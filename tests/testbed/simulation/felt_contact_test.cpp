@@ -104,8 +104,8 @@ TEST(FeltContact, AHitAddsUpToTheChangeOfVelocity) {
     });
     ASSERT_GT(dive.vehicle().contact.touched_steps, 100u);
     ASSERT_GT(fastest_m_s, 0.5);
-    // What the vehicle was before the first reading is not in the sum; all the rest is, but that it
-    // turns between two readings.
+    // The sum holds all changes of velocity since the first reading, apart from the effect of
+    // turning between two readings.
     EXPECT_LT(glm::distance(imu.sum_m_s, imu.velocity_m_s()), 0.1) << rate_hz;
     EXPECT_GT(hardest, 0.7 * fastest_m_s * std::min(rate_hz, 240.0)) << rate_hz;
   }

@@ -39,7 +39,7 @@ waypoints = [{position_m = [0, -15, -10]}, {position_m = [0, -18, -10]}]
   return dive_of(std::move(scene).value());
 }
 
-// What the navigation of a dive was off by, in metres and m/s, and in its own standard deviations.
+// The largest errors of a dive's navigation, in metres, in m/s and in its own standard deviations.
 struct Off {
   double most_m = 0.0, most_m_s = 0.0;
   double most_square = 0.0;  // errors over their covariance, in position and velocity
