@@ -186,18 +186,24 @@ def figures(scenario, results, style):
         return
     flat = [r for r in done if "angle_deg" in r["series"]]
     fig = style.figure(900, 620)
-    _line(style.area(fig, 70, 50, 870, 280), [r for r in done if r["settings"]["floor"] == "waves"] or done, style)
+    line = _first_and_last([r for r in done if r["settings"]["floor"] == "waves"] or done)
+    _line(style.area(fig, 70, 50, 870, 280), line, style)
     _errors(style.area(fig, 70, 360, 450 if flat else 870, 545), done, style)
     if flat:
-        _beams(style.area(fig, 520, 360, 870, 570), flat, style)
+        beams = _first_and_last(flat)
+        _beams(style.area(fig, 520, 360, 870, 570), beams, beams == line, style)
     yield "profiling.png", "The line's soundings, the chart's errors by condition, and the flat floor by beam", fig
 
 
+def _first_and_last(runs):
+    """One run of the first condition, and one of the last where it is another."""
+    return [runs[0], runs[-1]] if runs[-1]["condition"] != runs[0]["condition"] else runs[:1]
+
+
 def _line(ax, runs, style):
-    """The first condition's soundings, and the last one's where it is another."""
     x = np.linspace(0, runs[0]["settings"]["length_m"], 1000)
     ax.plot(x, depth_at(runs[0]["settings"], x), color=style.INK, lw=3.2, alpha=0.35, label="true")
-    for i, r in enumerate([runs[0], runs[-1]] if runs[-1]["condition"] != runs[0]["condition"] else runs[:1]):
+    for i, r in enumerate(runs):
         ax.plot(r["series"]["x"], r["series"]["depth"], ".x"[i], ms=2.5 + i, mew=0.7, color=style.color(i), label=report.words(r["condition"]))
     ax.invert_yaxis()
     ax.set_xlabel("along the line, m")
@@ -220,12 +226,14 @@ def _errors(ax, runs, style):
     style.legend(ax)
 
 
-def _beams(ax, runs, style):
+def _beams(ax, runs, named, style):
+    """named: whether the line's soundings above have the same marks, so that no second legend lies on the beams."""
     for i, r in enumerate(runs):
         ax.plot(r["series"]["angle_deg"], r["series"]["beam_depth"], ".x+"[i % 3], ms=2.5 + i % 3, mew=0.7, color=style.color(i),
                 label=report.words(r["condition"]))
     ax.invert_yaxis()
     ax.set_xlabel("angle of the beam, degrees")
     ax.set_ylabel("depth, m")
-    style.title(ax, "Flat floor")
-    style.legend(ax)
+    style.title(ax, "Flat floor (marks as above)" if named else "Flat floor")
+    if not named:
+        style.legend(ax)
