@@ -29,8 +29,9 @@ namespace neritic::sim {
 
 struct SimulationOptions {
   double step_s =
-      1.0 / kDefaultRate_hz;  // up to kMaxStep_s; a thread needs kMinRate_hz to kMaxRate_hz
-  int max_catch_up = 4;       // most steps at once in thread mode
+      1.0 / kDefaultRate_hz;       // up to kMaxStep_s; a thread needs kMinRate_hz to kMaxRate_hz
+  int max_catch_up = kMaxCatchUp;  // most steps at once in thread mode
+  TimeNs most_late_ns = kMostLate_ns;  // how late a step may be in thread mode
   bool log = true;         // keep messages and hashes in memory: 8 bytes a step, and each message
   std::uint64_t seed = 0;  // for the log only
 };
@@ -140,7 +141,7 @@ class Simulation {
     now.due_ns = clock.now();  // blending starts from here
     now.host_ns = clock.host_at(now.due_ns);
     source_.restart(now);
-    const StepPacer pacer(rate_hz, options_.max_catch_up, now.due_ns);
+    const StepPacer pacer(rate_hz, options_.max_catch_up, now.due_ns, options_.most_late_ns);
     thread_ = std::make_unique<StepThread>(
         clock, pacer, [this, &clock](TimeNs due_ns) { step_once(due_ns, clock.host_at(due_ns)); });
   }

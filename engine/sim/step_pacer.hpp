@@ -1,15 +1,20 @@
-// The steps that a clock asks for: a step every 1 / rate, a few at once after a delay, and beyond
-// those time is dropped and counted, so that a slow machine slows the simulation down and never
-// piles up work. Pure arithmetic on times that the caller reads; one thread.
+// The steps that a clock asks for: a step every 1 / rate. After a delay a few at once, and a short
+// delay is caught up whole. Beyond that time is dropped and counted, so that a slow machine slows
+// the simulation down and never piles up work. Pure arithmetic on times that the caller reads; one
+// thread.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "engine/core/clock.hpp"
 
 namespace neritic::sim {
 
 inline constexpr double kMinRate_hz = 60.0, kMaxRate_hz = 1000.0, kDefaultRate_hz = 240.0;
+// Of a simulation that runs by a clock: most steps at once, and how late a step may be.
+inline constexpr int kMaxCatchUp = 4;
+inline constexpr TimeNs kMostLate_ns = 100'000'000;
 
 class StepPacer {
  public:
@@ -23,9 +28,13 @@ class StepPacer {
     }
   };
 
+  static constexpr TimeNs kMostCatchUp_ns = 250'000'000;
+
   // rate_hz > 0, max_catch_up >= 1: most steps at once. The first step is due one period after
-  // start_ns.
-  StepPacer(double rate_hz, int max_catch_up, TimeNs start_ns);
+  // start_ns. most_late_ns: steps that are late by up to this wait for their turn. If the delay is
+  // not caught up within kMostCatchUp_ns, the machine is too slow: until it has caught up, and
+  // always where most_late_ns is 0, those beyond max_catch_up are dropped.
+  StepPacer(double rate_hz, int max_catch_up, TimeNs start_ns, TimeNs most_late_ns = 0);
 
   // How many steps to run at now_ns; they count as run. A clock that goes back asks for none.
   int take(TimeNs now_ns);
@@ -43,8 +52,10 @@ class StepPacer {
 
   double period_ns_;
   int max_catch_up_;
-  TimeNs origin_ns_;       // start, moved on by what was dropped
-  std::int64_t done_ = 0;  // steps taken
+  std::int64_t most_late_;           // steps that may wait, those that run included
+  TimeNs origin_ns_;                 // start, moved on by what was dropped
+  std::optional<TimeNs> behind_ns_;  // since then more than one step was due at each look
+  std::int64_t done_ = 0;            // steps taken
   Counts counts_;
 };
 

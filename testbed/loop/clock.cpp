@@ -7,12 +7,12 @@
 
 namespace neritic::testbed {
 
-Clock Clock::real(double start_s, double period_s, int catch_up, sim::RunClock* run) {
-  return {true, start_s, period_s, catch_up, run};
+Clock Clock::real(double start_s, double period_s, Frames frames, sim::RunClock* run) {
+  return {true, start_s, period_s, frames, run};
 }
 
 Clock Clock::simulated(double start_s, double period_s) {
-  return {false, start_s, period_s, kCatchUp, nullptr};
+  return {false, start_s, period_s, Frames::kSteps, nullptr};
 }
 
 Clock Clock::steps(std::uint64_t first, double period_s) {
@@ -24,7 +24,10 @@ Clock Clock::steps(std::uint64_t first, double period_s) {
 TimeNs Clock::wait_for_due() {
   sim::HostClock host;
   sim::StepClock& clock = run_ ? static_cast<sim::StepClock&>(*run_) : host;
-  if (!pacer_) pacer_.emplace(1.0 / period_s_, catch_up_, clock.now());
+  if (!pacer_ && kind_ == Frames::kSteps)
+    pacer_.emplace(1.0 / period_s_, sim::kMaxCatchUp, clock.now(), sim::kMostLate_ns);
+  else if (!pacer_)
+    pacer_.emplace(1.0 / period_s_, 1, clock.now());
   while (due_ == 0) {
     clock.wait_until(pacer_->next_ns());
     given_ = due_ = pacer_->take(clock.now());

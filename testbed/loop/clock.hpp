@@ -22,11 +22,12 @@ class Clock {
  public:
   // The host's. If a display says when it shows the frames, their times are the display's, but
   // those of one whose time stands go on by the host's after a second.
-  // Otherwise a frame is due each period; after a delay up to `catch_up` come at once, and time
-  // runs on over the others, which are dropped. catch_up: kCatchUp for steps, 1 for pictures, so
-  // that a late one does not make the next ones hurry. run: that a person may stop or speed up, on
-  // which the frames' times are; it outlives this.
-  static Clock real(double start_s, double period_s, int catch_up = kCatchUp,
+  // Otherwise a frame is due each period. After a delay, steps are caught up (sim::StepPacer);
+  // pictures are not, so that a late one does not make the next ones hurry. Time runs on over
+  // what is dropped. run: that a person may stop or speed up, on which the frames' times are; it
+  // outlives this.
+  enum class Frames { kSteps, kPictures };
+  static Clock real(double start_s, double period_s, Frames frames = Frames::kSteps,
                     sim::RunClock* run = nullptr);
   // Frame k is at start_s + k * period_s. Nothing waits.
   static Clock simulated(double start_s, double period_s);
@@ -34,22 +35,20 @@ class Clock {
   // bit.
   static Clock steps(std::uint64_t first, double period_s);
 
-  static constexpr int kCatchUp = 4;
-
   bool is_real() const { return real_; }
   // Waits for the next frame. display_at_ns: when a display that has waited already will show it.
   FrameTime next(std::optional<TimeNs> display_at_ns);
   std::uint64_t dropped() const { return pacer_ ? pacer_->counts().dropped : 0; }
 
  private:
-  Clock(bool real, double start_s, double period_s, int catch_up, sim::RunClock* run)
-      : real_(real), start_s_(start_s), period_s_(period_s), catch_up_(catch_up), run_(run) {}
+  Clock(bool real, double start_s, double period_s, Frames kind, sim::RunClock* run)
+      : real_(real), start_s_(start_s), period_s_(period_s), kind_(kind), run_(run) {}
   TimeNs wait_for_due();
   void see(TimeNs display_at_ns);
 
   bool real_;
   double start_s_, period_s_;
-  int catch_up_;
+  Frames kind_;
   sim::RunClock* run_;
   std::uint64_t frames_ = 0;           // so far, with those before the first
   TimeNs begun_ns_ = 0, seen_ns_ = 0;  // of the first and the newest frame of a display

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -56,6 +57,49 @@ TEST(StepPacer, ALongDelayIsDroppedAndCounted) {
   EXPECT_EQ(pacer.taken_ns(4, 3), 10 * kSecond);
   EXPECT_EQ(pacer.next_ns(), 10 * kSecond + 1'000'000);
   EXPECT_EQ(pacer.take(10 * kSecond + 1'000'000), 1);
+}
+
+TEST(StepPacer, ADelayThatIsCaughtUpSoonCostsNoStep) {
+  StepPacer pacer(240.0, 4, 0, 100'000'000);
+  const TimeNs stalled_ns = 100'000'000;  // 24 steps
+  for (int i = 0; i < 6; ++i) {
+    ASSERT_EQ(pacer.take(stalled_ns), 4);
+    EXPECT_EQ(pacer.taken_ns(4, 3), std::llround((4 * i + 4) * 1e9 / 240.0));
+  }
+  EXPECT_EQ(pacer.take(stalled_ns), 0);
+  EXPECT_EQ(pacer.counts().caught_up, 23u);
+  EXPECT_EQ(pacer.counts().dropped, 0u);
+  // Those that are later than that are dropped: a second more is 240 steps.
+  EXPECT_EQ(pacer.take(stalled_ns + kSecond), 4);
+  EXPECT_EQ(pacer.counts().dropped, 216u);
+  EXPECT_EQ(pacer.counts().dropped_ns, std::llround(216e9 / 240.0));
+}
+
+TEST(StepPacer, AMachineThatIsTooSlowDropsStepsAndIsNotLateAllTheTime) {
+  StepPacer pacer(1000.0, 4, 0, 100'000'000);
+  TimeNs now_ns = 0;
+  const auto run_until = [&](TimeNs end_ns, TimeNs step_ns) {
+    TimeNs latest_ns = 0;
+    while (now_ns < end_ns) {
+      const int steps = pacer.take(now_ns);
+      if (steps == 0) now_ns = pacer.next_ns();
+      for (int i = 0; i < steps; ++i) {
+        latest_ns = std::max(latest_ns, now_ns - pacer.taken_ns(steps, i));
+        now_ns += step_ns;
+      }
+    }
+    return latest_ns;
+  };
+  // Steps take 1.2 of their period.
+  EXPECT_LE(run_until(2 * kSecond, 1'200'000), 105'000'000);
+  EXPECT_LE(run_until(10 * kSecond, 1'200'000), 6'000'000);
+  EXPECT_NEAR(static_cast<double>(pacer.counts().dropped), 10'000.0 / 6.0, 30.0);
+  // Once it is fast again, a delay is caught up as before.
+  run_until(11 * kSecond, 100'000);
+  const std::uint64_t dropped = pacer.counts().dropped;
+  now_ns += 90'000'000;
+  run_until(12 * kSecond, 100'000);
+  EXPECT_EQ(pacer.counts().dropped, dropped);
 }
 
 TEST(StepPacer, AClockThatGoesBackAsksForNothing) {

@@ -401,7 +401,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::stri
   const double unlimited_s = limited || !flags.headless ? 0.0 : kHeadlessSeconds;
   const double recorded_s = replay ? replay->seconds() : 0.0;
   Loop loop({.clock = flags.fast ? Clock::simulated(start_s, period_s)
-                                 : Clock::real(start_s, period_s, 1, clock),
+                                 : Clock::real(start_s, period_s, Clock::Frames::kPictures, clock),
              .physics = physics.get(),
              .sensors = LoopSensors{.session = session.get(),
                                     .sonars = chosen.sonars,

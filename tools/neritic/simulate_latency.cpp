@@ -322,7 +322,7 @@ Status simulate_latency(const SimulateFlags& flags, scene::Scene scene,
                                                 {.may_fly = false, .clock = &run}));
   TimedView timed(*view, *physics, session->frames(), used, rate_hz);
   Loop loop(
-      {.clock = Clock::real(0.0, 1.0 / rate_hz, 1, &run),
+      {.clock = Clock::real(0.0, 1.0 / rate_hz, Clock::Frames::kPictures, &run),
        .physics = physics.get(),
        .sensors = LoopSensors{.session = session.get(), .capture = kColorOnGpu, .own_rates = true},
        .view = &timed,
