@@ -45,9 +45,10 @@ double quantum(const std::vector<double>& depth_m) {
   const std::size_t pixels = seen.size();
   std::ranges::sort(seen);
   // Equal but for rounding of floats.
-  const auto same =
-      std::ranges::unique(seen, [](double a, double b) { return b - a <= 1e-6 * std::abs(b); });
-  seen.erase(same.begin(), same.end());
+  // std::ranges::unique does not compile with Debian 12's clang, which tools/fuzz takes.
+  seen.erase(std::unique(seen.begin(), seen.end(),
+                         [](double a, double b) { return b - a <= 1e-6 * std::abs(b); }),
+             seen.end());
   if (seen.size() < kFewestSteps || 2 * seen.size() > pixels) return 0.0;
   double least = kMost_m;
   for (std::size_t i = 1; i < seen.size(); ++i) least = std::min(least, seen[i] - seen[i - 1]);
