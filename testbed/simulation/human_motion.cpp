@@ -96,9 +96,11 @@ Pose world_from(const diver::HumanState& state, const Pose& pose, bool rides) {
   return rides ? diver::standing_pose(state.root.position_ned_m, state.root.attitude) * pose : pose;
 }
 
-// Head and hands go where they are tracked; a suit's wrists are joints already.
+// Head and hands go where they are tracked; a suit's wrists are joints already. Elbows and spine
+// swing about their ways no faster than eased limbs.
 void follow_tracking(const PhysicsHuman& human, const DiverInputs& inputs, bool head, bool hands,
-                     const diver::HumanState& state, diver::JointRotations& joints) {
+                     double dt_s, const diver::HumanState& state, diver::BendSides& sides,
+                     diver::JointRotations& joints) {
   diver::ReachTargets targets;
   if (head) {
     const Pose tracked =
@@ -117,6 +119,16 @@ void follow_tracking(const PhysicsHuman& human, const DiverInputs& inputs, bool 
       targets.hands[i] = {place_in_body(state, tracked), body_from_tracked(state, tracked)};
     }
   }
+  joints = diver::reach(human.body, joints, targets, kFastestEase_rad_s * dt_s, sides);
+}
+
+// As the arm lies, but the wrist there, a place in the world.
+void reach_out(const PhysicsHuman& human, const Vec3& to_m, const diver::HumanState& state,
+               diver::JointRotations& joints) {
+  const diver::Posture posture = diver::posture_of(human.body, joints, {});
+  diver::ReachTargets targets;
+  targets.hands[1] = diver::body_from_hand(posture, true);
+  targets.hands[1]->position_m = place_in_body(state, {to_m, {}});
   joints = diver::reach(human.body, joints, targets);
 }
 
@@ -134,9 +146,11 @@ bool changed(const GroupState& before, const GroupState& now) {
 }
 
 // The parts of the limbs that poses place, and whether muscles move them at all: a hand that
-// ceases to be tracked, and limbs that go slack, change who moves them as well.
-std::uint64_t moved_parts(const DiverInputs& inputs, bool head, bool hands, bool conscious) {
+// ceases to be tracked, an arm that reaches out and limbs that go slack change who moves them too.
+std::uint64_t moved_parts(const DiverInputs& inputs, bool head, bool hands, bool reaches,
+                          bool conscious) {
   std::uint64_t parts = conscious ? 0 : 1;
+  if (reaches) parts |= 32;
   if (hands && inputs.hands_by_pose == 0) parts |= 2;
   if (hands && inputs.hands_by_pose != 0) parts |= (inputs.hand_poses.tracked & 3) << 2;
   if (head && (inputs.head.placed & kHeadPlaced)) parts |= 16;
@@ -242,27 +256,30 @@ diver::HumanInputs acting_inputs(const PhysicsHuman& human, const DiverInputs& i
       out.joints[diver::joint_of(hand)] = straight;
   if (authority(DiverGroup::kHead) == Authority::kNobody)
     out.joints[diver::joint_of(diver::kHead)] = straight;
-  if (hands || head) follow_tracking(human, inputs, head, hands, state.human, out.joints);
-
-  if (able.hand_to_m && able.conscious && !hands &&
-      authority(DiverGroup::kHands) == Authority::kAutopilot) {
-    // As the arm lies, but the wrist there.
-    const diver::Posture posture = diver::posture_of(human.body, out.joints, {});
-    diver::ReachTargets targets;
-    targets.hands[1] = diver::body_from_hand(posture, true);
-    targets.hands[1]->position_m = place_in_body(state.human, {*able.hand_to_m, {}});
-    out.joints = diver::reach(human.body, out.joints, targets);
-  }
+  const bool reaches = able.hand_to_m && able.conscious && !hands &&
+                       authority(DiverGroup::kHands) == Authority::kAutopilot;
 
   const auto another = [&](DiverGroup group) {
     const auto i = static_cast<std::size_t>(group);
     return changed(before[i], state.groups[i]);
   };
-  const std::uint64_t parts = moved_parts(inputs, head, hands, able.conscious);
+  const std::uint64_t parts = moved_parts(inputs, head, hands, reaches, able.conscious);
   const bool others = another(DiverGroup::kBody) || another(DiverGroup::kHands) ||
                       another(DiverGroup::kHead) || parts != state.ease.parts;
-  if (others) state.ease.paces = {};
+  const auto place_limbs = [&](diver::JointRotations joints) {
+    follow_tracking(human, inputs, head, hands, dt_s, state.human, state.sides, joints);
+    if (reaches) reach_out(human, *able.hand_to_m, state.human, joints);
+    return joints;
+  };
+  // What is eased begins on its own side, and does not swing on top of that.
+  if (others) state.ease.paces = {}, state.sides = {};
+  const diver::JointRotations unplaced = out.joints;
+  out.joints = place_limbs(unplaced);
   const bool jumped = count_jumps(inputs, others ? state.groups : before, out.joints, dt_s, state);
+  if (jumped) {
+    state.sides = {};
+    out.joints = place_limbs(unplaced);
+  }
   if (others || jumped) begin_ease(state.ease, state.human.held.joints, out.joints, dt_s);
   state.ease.parts = parts;
   step_ease(state.ease, out.joints, dt_s);

@@ -67,18 +67,24 @@ std::uint64_t note_jumps(JointEase& ease, const diver::JointRotations& last,
   diver::JointRotations eased = joints;
   step_ease(on, eased, dt_s);
   std::uint64_t jumped = 0;
+  bool arms = false;
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    const LimbSource source = source_of[i];
-    if (source == kPosed || (fresh >> source & 1) == 0) continue;
-    const bool wrist =
-        i == diver::joint_of(diver::kLeftHand) || i == diver::joint_of(diver::kRightHand);
+    const bool posed = source_of[i] == kPosed;
+    const LimbSource source = posed ? kHandsSource : source_of[i];
+    if ((fresh >> source & 1) == 0) continue;
+    const bool fast =
+        posed || i == diver::joint_of(diver::kLeftHand) || i == diver::joint_of(diver::kRightHand);
     const double most_rad = way_s[source] > 0.0
-                                ? way_s[source] * (wrist ? kFastestWrist_rad_s : kFastestLimb_rad_s)
+                                ? way_s[source] * (fast ? kFastestWrist_rad_s : kFastestLimb_rad_s)
                                 : kJump_rad_s * dt_s;
     const Quat off = glm::conjugate(eased[i]) * last[i];
-    if (angle_of(off) > most_rad) jumped |= std::uint64_t{1} << source;
+    if (!(angle_of(off) > most_rad)) continue;
+    if (posed)
+      arms = true;
+    else
+      jumped |= std::uint64_t{1} << source;
   }
-  return jumped;
+  return arms && jumped == 0 ? std::uint64_t{1} << kHandsSource : jumped;
 }
 
 }  // namespace neritic::testbed

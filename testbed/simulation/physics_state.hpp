@@ -9,6 +9,7 @@
 #include "diver/condition.hpp"
 #include "diver/gas_switch.hpp"
 #include "diver/human_step.hpp"
+#include "diver/reach.hpp"
 #include "diver/swimmer.hpp"
 #include "engine/sim/block.hpp"
 #include "engine/sim/simulation.hpp"
@@ -100,11 +101,13 @@ struct HumanPhysics {
   diver::GasSwitchState gas_switch;
   std::array<GroupState, kDiverGroups> groups;  // of the inputs
   JointEase ease;                               // after a change of who moves the limbs
+  diver::BendSides sides;                       // of what is tracked
 
   static void fields(auto&& field, auto& self) {
     fields_but_groups(field, self);
     field("groups", self.groups);
     field("ease", self.ease);
+    field("sides", self.sides);
   }
   static void fields_but_groups(auto&& field, auto& self) {
     field("human", self.human);

@@ -30,17 +30,20 @@ constexpr double kStageTurn_rad_s = radians(60.0), kLongestStageTurn_s = 0.1;
 // A wearer who looks farther off the body than a neck turns brings the body round.
 constexpr double kNeck_rad = radians(75.0), kAhead_rad = radians(20.0);
 
-// Within this time a limb comes from where it is to where it is tracked: slowly enough that the
-// water turns the body little.
+// Within this time a limb comes from where it is to where it is tracked, or a hand far off later,
+// at a swimmer's pace (simulation/joint_ease.hpp): slowly enough that the water turns the body
+// little.
 constexpr double kEase_s = 1.0;
+constexpr double kSteepest = 1.5;  // slope of smoothstep in its middle
 
 // From 0 to 1, without a jolt at either end.
 double eased(double since_s) {
   return glm::smoothstep(0.0, kEase_s, since_s);
 }
-Pose between(const Pose& from, const Pose& to, double share) {
-  return {glm::mix(from.position_m, to.position_m, share),
-          glm::slerp(from.rotation, to.rotation, share)};
+
+// From body axes to a standing person's, and back (diver/frames.hpp).
+Vec3 other_axes(const Vec3& v) {
+  return {v.y, v.x, -v.z};
 }
 
 double most_climb_m_s(const DiveInput& input) {
@@ -58,7 +61,7 @@ Wearer::Wearer(LivePhysics& physics)
   const diver::Body& body = human().body;
   const Vec3 eyes =
       diver::body_from_eyes(body, diver::posture_of(body, diver::straight_joints(), {})).position_m;
-  eyes_m_ = {eyes.y, eyes.x, -eyes.z};  // of forward, starboard, down (diver/frames.hpp)
+  eyes_m_ = other_axes(eyes);
 }
 
 // The wearer begins facing where the diver's crown points, of a swimmer, or the chest, of one
@@ -192,18 +195,48 @@ HeadPose Wearer::head_pose(double scene_time_s) {
   return out;
 }
 
+Wearer::Begun Wearer::begin_hand(bool right, const Pose& tracked, double scene_time_s) const {
+  const diver::Posture posture = diver::posture_of(human().body, state().human.limbs.rotation, {});
+  const Pose from = riding(world_from_wrist(human(), state(), right));
+  const auto round = [&](const Vec3& place_m) {
+    return diver::round_shoulder(posture, right, other_axes(place_m));
+  };
+  Begun begun{.at_s = scene_time_s, .off = round(from.position_m) - round(tracked.position_m)};
+  begun.turned_off = glm::normalize(glm::conjugate(tracked.rotation) * from.rotation);
+  if (begun.turned_off.w < 0.0) begun.turned_off = -begun.turned_off;
+  const double turned_rad = 2.0 * std::acos(std::min(1.0, begun.turned_off.w));
+  const double widest_rad = std::max(turned_rad, std::hypot(begun.off.x, begun.off.y));
+  begun.lasts_s = std::max(kEase_s, kSteepest * widest_rad / kFastestEase_rad_s);
+  return begun;
+}
+
+// Round the shoulder: on a straight way a hand would go through it or the chest.
+Pose Wearer::eased_hand(bool right, const Pose& tracked, const Begun& begun,
+                        double scene_time_s) const {
+  const double left_s = begun.lasts_s - (scene_time_s - begun.at_s);
+  if (!(left_s > 0.0)) return tracked;
+  const double share = glm::smoothstep(0.0, begun.lasts_s, left_s);
+  const diver::Posture posture = diver::posture_of(human().body, state().human.limbs.rotation, {});
+  const Vec3 round =
+      diver::round_shoulder(posture, right, other_axes(tracked.position_m)) + share * begun.off;
+  return {other_axes(diver::wrist_round_shoulder(posture, right, round)),
+          tracked.rotation * glm::slerp(Quat(1.0, 0.0, 0.0, 0.0), begun.turned_off, share)};
+}
+
+// Without the body's frame a change of source is eased by the step alone.
 HandPoses Wearer::hand_poses(double scene_time_s) {
   HandPoses out;
   for (std::size_t i = 0; i < 2; ++i) {
     std::optional<Begun>& begun = hands_begun_[i];
-    if (!tracked_.hands[i]) {
-      begun.reset();
-      continue;
+    if (!tracked_.hands[i] || !world_from_body_) begun.reset();
+    if (!tracked_.hands[i]) continue;
+    const bool right = i == 1;
+    Pose hand = riding(*tracked_.hands[i]);
+    if (world_from_body_) {
+      if (!begun || scene_time_s < begun->at_s) begun = begin_hand(right, hand, scene_time_s);
+      hand = eased_hand(right, hand, *begun, scene_time_s);
     }
-    if (!begun || scene_time_s < begun->at_s)
-      begun = Begun{scene_time_s, riding(world_from_wrist(human(), state(), i == 1))};
-    out.world_from_hand[i] =
-        between(begun->from, riding(*tracked_.hands[i]), eased(scene_time_s - begun->at_s));
+    out.world_from_hand[i] = hand;
     out.tracked |= std::uint64_t{1} << i;
   }
   if (out.tracked != 0 && world_from_body_) out.tracked |= kHandsRide;

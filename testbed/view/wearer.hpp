@@ -3,7 +3,7 @@
 // the source "wearer", as those of any other device. The stage goes with the diver's body, level,
 // so that the wearer's eyes are the diver's; it turns by the wearer's stick, and with a body that
 // turns off it, but not with its strokes. Hands that begin to be tracked come to their place within
-// a second, from where the body had them. A wearer who swims turns the head alone: a head in its
+// two seconds, from where the body had them. A wearer who swims turns the head alone: a head in its
 // tracked place bends the spine, by which a swimmer steers. Rendering thread.
 #pragma once
 
@@ -61,6 +61,9 @@ class Wearer final : public SampleSource {
   diver::SwimGoal pushed_by_keys();
   Pose riding(const Pose& world_from_tracked) const;
   HeadPose head_pose(double scene_time_s);
+  struct Begun;
+  Begun begin_hand(bool right, const Pose& tracked, double scene_time_s) const;
+  Pose eased_hand(bool right, const Pose& tracked, const Begun& begun, double scene_time_s) const;
   HandPoses hand_poses(double scene_time_s);
   void swim(SampleInbox& inbox, double scene_time_s);
   void send_gaze(SampleInbox& inbox, const xr::Tracked::Gaze& gaze);
@@ -78,11 +81,12 @@ class Wearer final : public SampleSource {
   std::optional<double> followed_s_;  // when that of the body was taken
   bool turns_body_ = false;           // towards where the head looks
   xr::Tracked tracked_;
-  // A hand that is tracked: since when, in the scene's time, and where it was then, riding with the
-  // body.
+  // A hand that is tracked: since when, in the scene's time, how long it comes to its place, and
+  // how far off it was then, as its arm sees it (diver/reach.hpp), riding with the body.
   struct Begun {
-    double at_s = 0.0;
-    Pose from;
+    double at_s = 0.0, lasts_s = 0.0;
+    Vec3 off{0.0};
+    Quat turned_off{1.0, 0.0, 0.0, 0.0};
   };
   std::array<std::optional<Begun>, 2> hands_begun_;
   std::optional<double> let_go_s_;  // when the head of one who swims was let go of its place

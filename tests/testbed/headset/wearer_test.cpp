@@ -272,6 +272,52 @@ TEST(WearerStage, TurnsByTheStickAndTheBodyComesRound) {
       5.0);
 }
 
+// From arms that hang: the left hand before the chest, turned in, and the right one farther out. On
+// a straight way the wrists went past the shoulders, where an arm turned by 167 degrees in a step.
+// They go in front of the chest, not behind the back.
+TEST(WearerHands, ThatComeIntoViewBringTheArmsThereAtASwimmersPace) {
+  const scene::Scene scene = dive_of(hover_text("")).scene;
+  for (const double frame_s : {1.0 / 72.0, 0.05}) {
+    NERITIC_ASSERT_OK(const auto physics, LivePhysics::create(scene, LivePhysics::Pace::kPicture));
+    Wearer wearer(*physics);
+    physics->listen({&wearer});
+    std::optional<diver::JointRotations> last;
+    double widest_rad = 0.0, behind_m = 0.0, dt_s = physics->world().step_s();
+    physics->observe([&](const sim::Snapshot<PhysicsState>& now) {
+      const diver::JointRotations& joints = now.state.humans()[0].human.held.joints;
+      for (std::size_t i = 0; last && i < joints.size(); ++i) {
+        const Quat off = glm::conjugate((*last)[i]) * joints[i];
+        widest_rad = std::max(widest_rad,
+                              2.0 * std::atan2(std::hypot(off.x, off.y, off.z), std::abs(off.w)));
+      }
+      last = joints;
+      const diver::Posture posture =
+          diver::posture_of(physics->world().humans()[0].body, joints, {});
+      for (const diver::Segment hand : {diver::kLeftHand, diver::kRightHand})
+        behind_m = std::min(behind_m, posture[hand].origin_m.z);
+    });
+    for (double time_s = 0.0; time_s < 3.0; time_s += frame_s) {
+      physics->reach(time_s);
+      xr::DisplayFrame seen;
+      const Pose stage = wearer.world_from_stage({scene, &physics->motion()}, time_s);
+      seen.world_from_head = stage;
+      // The backs of the hands up, fingers ahead.
+      const Quat palms_in = from_yaw_pitch_roll(0.0, radians(90.0), 0.0);
+      const Quat left = from_yaw_pitch_roll(radians(-70.0), 0.0, 0.0) * palms_in;
+      seen.tracked.hands = {stage * Pose{Vec3(-0.1, -0.24, -0.34), left},
+                            stage * Pose{Vec3(0.3, -0.4, -0.3), palms_in}};
+      wearer.take(seen, {}, {}, 1.0, frame_s);
+    }
+    // An elbow gets straight like the root of what is left to go.
+    EXPECT_LT(degrees(widest_rad), 30.0) << frame_s;
+    EXPECT_GT(behind_m, -0.08) << frame_s;
+    EXPECT_GT(widest_rad, 0.5 * kFastestEase_rad_s * dt_s) << frame_s;
+    const HumanPhysics& diver = physics->newest().state.humans()[0];
+    EXPECT_EQ(diver.ease.left_s, 0.0) << frame_s;
+    EXPECT_EQ(diver.groups[static_cast<std::size_t>(DiverGroup::kHands)].jumps, 0u) << frame_s;
+  }
+}
+
 // From a metre before the own eyes, looking back: the crown would be nearer than that.
 TEST_F(HeadsetWearer, TheOwnBodyIsSeenWithoutItsHead) {
   const std::string back = fmt::format(

@@ -2,8 +2,10 @@
 // body is not thrown about; a source that goes on where the limbs are is followed to the bit.
 #include "testbed/simulation/joint_ease.hpp"
 
+#include "diver/reach.hpp"
 #include "engine/core/random.hpp"
 #include "testbed/samples/riding.hpp"
+#include "testbed/simulation/saved_state.hpp"
 #include "tests/testbed/simulation/devices.hpp"
 
 namespace neritic::testbed {
@@ -95,6 +97,134 @@ TEST(JointEase, AHeadThatBeginsAsideAndAHandThatIsLostAreEased) {
   EXPECT_LT(begun.joint_rad_s, 1.3 * kFastestEase_rad_s);
   EXPECT_LT(lost.joint_rad_s, 1.3 * kFastestEase_rad_s);
   EXPECT_GT(lost.joint_rad_s, 0.5);
+}
+
+// The poses of hands that ride with the body, in a standing person's axes from the hips, at a rate.
+struct TrackedHands {
+  TestDive dive = dive_of(hover_text("hands = { from = \"headset\", hold_s = 1.0 }"));
+  Device device{dive, "headset", "diver/hand_poses"};
+  double hz = 60.0;
+  int step = 0;
+
+  void say(const Vec3& left_m, const Vec3& right_m, std::uint64_t tracked = 3) {
+    if (step++ % static_cast<int>(240.0 / hz) != 0) return;
+    const Quat ahead = turned(radians(80.0), Vec3(1, 0, 0));
+    device.say(HandPoses{{Pose{left_m, ahead}, Pose{right_m, ahead}}, tracked | kHandsRide});
+  }
+  // How far the wanted wrist is from there.
+  double off_m(bool right, const Vec3& place_m) const {
+    const diver::Body& body = dive.world->humans()[0].body;
+    const Vec3 wrist =
+        diver::body_from_hand(diver::posture_of(body, diver_of(dive).human.held.joints, {}), right)
+            .position_m;
+    return glm::distance(Vec3(wrist.y, wrist.x, -wrist.z), place_m);
+  }
+  std::uint64_t jumps() const { return group(dive, DiverGroup::kHands).jumps; }
+};
+constexpr Vec3 kLeftPlace_m(-0.25, 0.35, -0.35), kRightPlace_m(0.25, 0.30, -0.35);
+
+// Whole arms go there by inverse kinematics; the jump is no more than those of a suit.
+TEST(JointEase, AHandThatIsTrackedElsewhereAllAtOnceIsEasedAndCounted) {
+  for (const double hz : {20.0, 60.0, 240.0})
+    for (const double gap_s : {0.0, 0.3}) {
+      TrackedHands hands;
+      hands.hz = hz;
+      thrown_in(hands.dive, 3.0, [&] { hands.say(kLeftPlace_m, kRightPlace_m); });
+      EXPECT_LT(hands.off_m(true, kRightPlace_m), 1e-6);
+      EXPECT_EQ(hands.jumps(), 0u);
+      hands.dive.run(gap_s);
+      const Vec3 elsewhere_m(0.45, 0.85, 0.05);
+      const Thrown thrown =
+          thrown_in(hands.dive, 3.0, [&] { hands.say(kLeftPlace_m, elsewhere_m); });
+      EXPECT_LT(thrown.joint_rad_s, 1.2 * kFastestEase_rad_s) << hz << ", " << gap_s;
+      EXPECT_GT(thrown.joint_rad_s, 0.5 * kFastestEase_rad_s) << hz << ", " << gap_s;
+      EXPECT_LT(hands.off_m(true, elsewhere_m), 1e-6) << hz << ", " << gap_s;
+      EXPECT_LT(hands.off_m(false, kLeftPlace_m), 1e-6) << hz << ", " << gap_s;
+      EXPECT_EQ(hands.jumps(), 1u) << hz << ", " << gap_s;
+      EXPECT_EQ(group(hands.dive, DiverGroup::kHands).losses, 0u);
+    }
+}
+
+// It comes and goes, each time elsewhere: another source, so no jump.
+TEST(JointEase, AHandThatIsLostAndFoundAgainAndAgainIsEased) {
+  TrackedHands hands;
+  const std::array places{kRightPlace_m, Vec3(0.5, 0.9, 0.0), Vec3(-0.1, 0.45, -0.3),
+                          Vec3(0.3, -0.1, 0.2)};
+  Thrown thrown;
+  for (int i = 0; i < 8; ++i) {
+    const std::uint64_t tracked = i % 2 == 0 ? 3 : 1;
+    const Vec3 place_m = places[static_cast<std::size_t>(i / 2)];
+    const Thrown now = thrown_in(hands.dive, i % 3 == 0 ? 0.4 : 1.3,
+                                 [&] { hands.say(kLeftPlace_m, place_m, tracked); });
+    thrown.joint_rad_s = std::max(thrown.joint_rad_s, now.joint_rad_s);
+    thrown.body_rad_s = std::max(thrown.body_rad_s, now.body_rad_s);
+  }
+  EXPECT_LT(thrown.joint_rad_s, 1.5 * kFastestEase_rad_s);
+  EXPECT_LT(thrown.body_rad_s, 2.5);
+  EXPECT_EQ(hands.jumps(), 0u);
+}
+
+// Ahead out of reach and back at up to 1.9 m/s, across the chest, over the head and behind the
+// back.
+TEST(JointEase, HandsThatMoveAsPeopleMoveThemAreFollowed) {
+  for (const double hz : {20.0, 72.0, 240.0}) {
+    TrackedHands hands;
+    hands.hz = hz;
+    const auto place = [](double time_s) {
+      const double phase = 2.0 * kPi * 0.4 * time_s;
+      return Vec3(0.25 - 0.35 * std::sin(0.5 * phase), 0.35 + 0.55 * std::sin(0.23 * phase),
+                  -0.30 + 0.50 * std::sin(phase));
+    };
+    thrown_in(hands.dive, 3.0, [&] { hands.say(kLeftPlace_m, place(0.0)); });
+    double widest_rad = 0.0;
+    diver::JointRotations last = diver_of(hands.dive).human.held.joints;
+    for (int step = 0; step < 12 * 240; ++step) {
+      const Vec3 right_m = place(step / 240.0);
+      hands.say(kLeftPlace_m, right_m);
+      hands.dive.simulation->advance(1);
+      ASSERT_EQ(diver_of(hands.dive).ease.left_s, 0.0) << hz << ", " << step;
+      const diver::JointRotations& now = diver_of(hands.dive).human.held.joints;
+      for (std::size_t i = 0; i < diver::kJoints; ++i)
+        widest_rad = std::max(widest_rad, angle_between(last[i], now[i]));
+      last = now;
+    }
+    // An elbow gets straight like the root of what is left to go.
+    EXPECT_LT(degrees(widest_rad), 55.0 * std::sqrt(20.0 / hz)) << hz;
+    EXPECT_EQ(hands.jumps(), 0u) << hz;
+  }
+}
+
+// Past the direction behind the back in which no elbow has a side: it still swings there while the
+// hand is where it is tracked, also in a run that goes on from a saved state.
+TEST(JointEase, AnElbowThatSwingsGoesOnFromASavedState) {
+  TrackedHands run, other;
+  run.hz = other.hz = 240.0;
+  const auto say = [&](TrackedHands& hands, int step) {
+    const double along = std::clamp(0.002 * (step - 720), -0.15, 0.15);
+    const Vec3 behind = glm::normalize(Vec3(-0.2 + along, -0.5, 0.84));
+    hands.say(kLeftPlace_m, Vec3(0.19, 0.55, 0.0) + 0.4 * behind);
+    hands.dive.simulation->advance(1);
+  };
+  constexpr int kSaved = 735, kEnd = 960;
+  for (int step = 0; step < kSaved; ++step) say(run, step);
+  const StateFormat format = other.dive.world->state_format();
+  const auto bytes = encode_state(format, saved_state(*run.dive.simulation, format));
+  const auto restored = parse_state(format, bytes, "dive.state");
+  ASSERT_TRUE(restored.ok()) << restored.error().message;
+  restore_state(*other.dive.simulation, *restored);
+  double widest_rad = 0.0;
+  for (int step = kSaved; step < kEnd; ++step) {
+    const diver::JointRotations last = diver_of(run.dive).human.held.joints;
+    say(run, step);
+    say(other, step);
+    ASSERT_EQ(run.dive.simulation->newest().hash, other.dive.simulation->newest().hash) << step;
+    const diver::JointRotations& now = diver_of(run.dive).human.held.joints;
+    for (std::size_t i = 0; i < diver::kJoints; ++i)
+      widest_rad = std::max(widest_rad, angle_between(last[i], now[i]));
+    EXPECT_EQ(diver_of(run.dive).ease.left_s, 0.0) << step;
+  }
+  EXPECT_GT(widest_rad, kFastestEase_rad_s / 240.0);
+  EXPECT_LT(widest_rad, 2.0 * kFastestEase_rad_s / 240.0);
 }
 
 // It goes on from where the limbs are, and moves them fast from then on.
