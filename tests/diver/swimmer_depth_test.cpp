@@ -20,15 +20,19 @@ struct CarriedGear {
   const char* name;
   std::vector<Tank> tanks;
 };
+// The lightest and the heaviest, and one between; more where the test is thorough.
 std::vector<CarriedGear> gears() {
   const GasMix nitrox{0.5, 0.0}, oxygen{1.0, 0.0}, trimix{0.18, 0.45};
   const Tank back = carried(12.0, 230.0, kAir), deep = carried(12.0, 230.0, trimix);
   const Tank stage = carried(11.1, 200.0, nitrox), last = carried(11.1, 200.0, oxygen);
-  return {{"single", {back}},
-          {"twin", {back, back}},
-          {"twin and stage", {back, back, stage}},
-          {"24 l and stage", {carried(24.0, 230.0, kAir), stage}},
-          {"twin and two stages", {deep, deep, stage, last}}};
+  std::vector<CarriedGear> out{{"single", {back}},
+                               {"twin and stage", {back, back, stage}},
+                               {"twin and two stages", {deep, deep, stage, last}}};
+  if (test::is_thorough()) {
+    out.push_back({"twin", {back, back}});
+    out.push_back({"24 l and stage", {carried(24.0, 230.0, kAir), stage}});
+  }
+  return out;
 }
 
 struct DepthChange {

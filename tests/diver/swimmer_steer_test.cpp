@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/diver/swims.hpp"
+#include "tests/support/support.hpp"
 
 namespace neritic::diver {
 namespace {
@@ -11,19 +12,15 @@ struct Steered {
   double soon_m_s = 0.0;    // mean rate along the way from the 2nd to the 5th second
   double rate_m_s = 0.0;    // from the 4th to the 10th
   double stops_m = 0.0;     // from where it was let go of to where it rests
-  double off_m = 0.0;       // then from there at most, within a minute
+  double off_m = 0.0;       // then from there at most, within half a minute, or one (thorough)
   double most_rad_s = 0.0;  // the body's turning
 };
 
-// From a hover at that depth, or a swim; the gas in the tanks as a share of full ones.
-Steered steer(double depth_m, double climb_m_s, bool ahead, double gas) {
-  const Body body = body_with(Gear{});
-  Swim s = begin(body, {0.0, 0.0, depth_m}, 0.0);
-  for (double& moles : s.state.life.tanks.moles) moles *= gas;
+// From a hover at that depth, or a swim.
+Steered steer(const Body& body, Swim s, double depth_m, double climb_m_s, bool ahead) {
   Steered out;
   const auto nothing = [](const HumanState&) {};
   const auto place = [&] { return s.state.root.position_ned_m; };
-  swim_for(body, s, {{0.0, 0.0, depth_m}, 0.0}, 120.0, nothing);
   if (ahead) swim_for(body, s, {{100.0, 0.0, depth_m}, 0.5}, 15.0, nothing);
   const double begin_m = place().z, way = std::copysign(1.0, climb_m_s);
   const auto seen = [&](const HumanState& state) {
@@ -45,7 +42,7 @@ Steered steer(double depth_m, double climb_m_s, bool ahead, double gas) {
     stays.z = place().z;
   }
   out.stops_m = way * (depths_m.back() - stays.z);
-  swim_for(body, s, {stays, 0.0}, 60.0, [&](const HumanState& state) {
+  swim_for(body, s, {stays, 0.0}, test::is_thorough() ? 60.0 : 30.0, [&](const HumanState& state) {
     seen(state);
     out.off_m = std::max(out.off_m, std::abs(state.root.position_ned_m.z - stays.z));
   });
@@ -63,14 +60,17 @@ void expect_steered(const Steered& s, double climb_m_s) {
 }
 
 TEST(Swimmer, GoesUpAndDownAtTheRateThatAPersonAsks) {
-  for (const double depth_m : {5.0, 12.0, 30.0})
+  const Body body = body_with(Gear{});
+  for (const double depth_m : {5.0, 12.0, 30.0}) {
+    Swim hover = begin(body, {0.0, 0.0, depth_m}, 0.0);
+    swim_for(body, hover, {{0.0, 0.0, depth_m}, 0.0}, 120.0, [](const HumanState&) {});
     for (const double climb_m_s : {0.15, -0.15, 0.25, -0.25})
       for (const bool ahead : {false, true}) {
         if (depth_m < 6.0 && climb_m_s > 0.2) continue;  // it would reach the surface
         SCOPED_TRACE(testing::Message() << depth_m << " m, " << climb_m_s << " m/s, " << ahead);
-        const Steered s = steer(depth_m, climb_m_s, ahead, 1.0);
-        expect_steered(s, climb_m_s);
+        expect_steered(steer(body, hover, depth_m, climb_m_s, ahead), climb_m_s);
       }
+  }
 }
 
 }  // namespace
