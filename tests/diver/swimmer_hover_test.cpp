@@ -52,8 +52,10 @@ TEST(Swimmer, HoversLevelAtItsPlaceWhileTheTankEmpties) {
   const bool thorough = test::is_thorough();
   for (const double depth_m : thorough ? std::vector{6.0, 15.0, 30.0} : std::vector{6.0, 30.0}) {
     // The deeper, the sooner the tank empties.
-    const Hover hover =
-        hover_after_a_swim(depth_m, 0.0, thorough ? 900.0 : depth_m > 20.0 ? 600.0 : 300.0);
+    const Hover hover = hover_after_a_swim(depth_m, 0.0,
+                                           thorough         ? 900.0
+                                           : depth_m > 20.0 ? 600.0
+                                                            : 300.0);
     EXPECT_LT(hover.off_depth_m, 0.35) << depth_m;
     EXPECT_LT(hover.pitch_deg, 15.0) << depth_m;
     EXPECT_LT(hover.away_m, 1.0) << depth_m;

@@ -235,8 +235,8 @@ TEST_P(Golden, SceneLooksAndSoundsAsItDid) {
   expect_like_golden_numbers(numbers, c);
 }
 
-// Suites whose cases share a process, and with it the device's pipelines, which cost half of a case:
-// those of quick runs, and the others in thirds, so that both cores have some.
+// Suites whose cases share a process, and with it the device's pipelines, which cost half of a
+// case: those of quick runs, and the others in thirds, so that both cores have some.
 enum class Share { kQuick, kFirst, kSecond, kThird };
 std::vector<Case> cases_of(Share share) {
   std::vector<Case> quick, others;

@@ -121,16 +121,19 @@ SlimErrors pole_errors(gpu::Device& device, const scene::Sonar& sonar, double ra
 TEST_F(SonarSlim, PolesReturnEnergyAsTheirArea) {
   struct Bound {
     const char* quality;
-    int poles;
+    int thin_poles, thick_poles;
     double mean, worst;
   };
+  // Thick poles differ by 0.003 at most, so that three tell their mean to 0.002.
+  const int thick_poles = test::is_thorough() ? 12 : 3;
   for (const Bound& bound :
-       {Bound{"", 12, 0.02, 0.1}, Bound{"draft", 12, 0.02, 0.1}, Bound{"standard", 12, 0.01, 0.05},
-        Bound{"reference", 4, 0.01, 0.02}}) {
+       {Bound{"", 12, thick_poles, 0.02, 0.1}, Bound{"draft", 12, thick_poles, 0.02, 0.1},
+        Bound{"standard", 12, thick_poles, 0.01, 0.05},
+        Bound{"reference", 4, test::is_thorough() ? 4 : 2, 0.01, 0.02}}) {
     const scene::Sonar sonar = slim_sonar(bound.quality, 80);
-    const auto places = upright_poles(bound.poles);
-    const SlimErrors thin = pole_errors(device(), sonar, kThin_m, places),
-                     thick = pole_errors(device(), sonar, kThick_m, places);
+    const SlimErrors thin = pole_errors(device(), sonar, kThin_m, upright_poles(bound.thin_poles)),
+                     thick =
+                         pole_errors(device(), sonar, kThick_m, upright_poles(bound.thick_poles));
     for (const SlimErrors& found : {thin, thick}) {
       EXPECT_LT(std::abs(found.mean), bound.mean) << bound.quality;
       EXPECT_LT(found.worst, bound.worst) << bound.quality;
