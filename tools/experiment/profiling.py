@@ -184,36 +184,50 @@ def figures(scenario, results, style):
     done = [r for r in results if r["series"]]
     if not done:
         return
-    flat = [r for r in done if "angle_deg" in r["series"]]
+    line, of_line = _shown([r for r in done if r["settings"]["floor"] == "waves"] or done)
+    flat, of_flat = _shown([r for r in done if "angle_deg" in r["series"]])
     fig = style.figure(900, 620)
-    line = _first_and_last([r for r in done if r["settings"]["floor"] == "waves"] or done)
-    _line(style.area(fig, 70, 50, 870, 280), line, style)
+    _line(style.area(fig, 70, 50, 870, 280), line, of_line, style)
     _errors(style.area(fig, 70, 360, 450 if flat else 870, 545), done, style)
     if flat:
-        beams = _first_and_last(flat)
-        _beams(style.area(fig, 520, 360, 870, 570), beams, beams == line, style)
+        _beams(style.area(fig, 520, 360, 870, 570), flat, of_flat, flat == line, style)
     yield "profiling.png", "The line's soundings, the chart's errors by condition, and the flat floor by beam", fig
 
 
-def _first_and_last(runs):
-    """One run of the first condition, and one of the last where it is another."""
-    return [runs[0], runs[-1]] if runs[-1]["condition"] != runs[0]["condition"] else runs[:1]
+def _shown(runs):
+    """A run of each condition, of more than three of the first, the middle and the last one; and what the title adds then."""
+    first = {}
+    for r in runs:
+        first.setdefault(report.words(r["condition"]), r)
+    runs = list(first.values())
+    if len(runs) <= 3:
+        return runs, ""
+    return [runs[0], runs[len(runs) // 2], runs[-1]], f", 3 of {len(runs)} conditions"
 
 
-def _line(ax, runs, style):
+def _marked(ax, runs, x, y, style):
+    for i, r in enumerate(runs):
+        ax.plot(r["series"][x], r["series"][y], ".x+"[i], ms=2.5 + i, mew=0.7, color=style.color(i), label=report.words(r["condition"]))
+    ax.invert_yaxis()
+    ax.set_ylabel("depth, m")
+
+
+def _line(ax, runs, of, style):
     x = np.linspace(0, runs[0]["settings"]["length_m"], 1000)
     ax.plot(x, depth_at(runs[0]["settings"], x), color=style.INK, lw=3.2, alpha=0.35, label="true")
-    for i, r in enumerate(runs):
-        ax.plot(r["series"]["x"], r["series"]["depth"], ".x"[i], ms=2.5 + i, mew=0.7, color=style.color(i), label=report.words(r["condition"]))
-    ax.invert_yaxis()
+    _marked(ax, runs, "x", "depth", style)
     ax.set_xlabel("along the line, m")
-    ax.set_ylabel("depth, m")
-    style.title(ax, "Soundings within 0.5 m of the middle")
+    style.title(ax, "Soundings within 0.5 m of the middle" + of)
     style.legend(ax)
 
 
 def _errors(ax, runs, style):
-    names = [report.words(r["condition"]).replace(", ", "\n") for r in runs]
+    factors = list(runs[0]["condition"])
+    if len(factors) == 1:  # its name once, since many side by side have no room
+        names = [report.number(r["condition"][factors[0]]) for r in runs]
+        ax.set_xlabel(factors[0])
+    else:
+        names = [report.words(r["condition"]).replace(", ", "\n") for r in runs]
     for name, dx, hue in (("rmse_m", -0.2, style.BLUE), ("bias_m", 0.2, style.ORANGE)):
         ax.bar(np.arange(len(runs)) + dx, [1000 * r["measures"][name] for r in runs], 0.38, color=hue,
                edgecolor=style.INK, lw=0.6, label=name.removesuffix("_m"), hatch="//" if dx > 0 else None)
@@ -226,14 +240,10 @@ def _errors(ax, runs, style):
     style.legend(ax)
 
 
-def _beams(ax, runs, named, style):
+def _beams(ax, runs, of, named, style):
     """named: whether the line's soundings above have the same marks, so that no second legend lies on the beams."""
-    for i, r in enumerate(runs):
-        ax.plot(r["series"]["angle_deg"], r["series"]["beam_depth"], ".x+"[i % 3], ms=2.5 + i % 3, mew=0.7, color=style.color(i),
-                label=report.words(r["condition"]))
-    ax.invert_yaxis()
+    _marked(ax, runs, "angle_deg", "beam_depth", style)
     ax.set_xlabel("angle of the beam, degrees")
-    ax.set_ylabel("depth, m")
-    style.title(ax, "Flat floor (marks as above)" if named else "Flat floor")
+    style.title(ax, f"Flat floor (marks as above){of}" if named else f"Flat floor{of}")
     if not named:
         style.legend(ax)
