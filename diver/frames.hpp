@@ -28,8 +28,12 @@ inline Pose standing_pose(const Vec3& position_ned_m, const Quat& ned_from_body)
 inline Quat ned_from_standing(const Quat& world_from_standing) {
   return ned_from_world(glm::normalize(world_from_standing * glm::conjugate(body_from_standing())));
 }
-// A joint's rotation, parent_from_child, in the axes of a standing model: (forward, starboard,
-// down) are its (y, x, -z).
+// From body axes to those of a standing model, or back: (forward, starboard, down) are its
+// (y, x, -z).
+inline Vec3 standing_axes(const Vec3& v) {
+  return {v.y, v.x, -v.z};
+}
+// A joint's rotation, parent_from_child, in the axes of a standing model.
 inline Quat standing_joint(const Quat& joint) {
   return {joint.w, joint.y, joint.x, -joint.z};
 }

@@ -12,7 +12,7 @@
 namespace neritic::sim {
 
 inline constexpr double kMinRate_hz = 60.0, kMaxRate_hz = 1000.0, kDefaultRate_hz = 240.0;
-// Of a simulation that runs by a clock: most steps at once, and how late a step may be.
+// A simulation that runs by a clock takes at most so many steps at once, and a step may be so late.
 inline constexpr int kMaxCatchUp = 4;
 inline constexpr TimeNs kMostLate_ns = 100'000'000;
 

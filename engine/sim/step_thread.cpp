@@ -46,11 +46,15 @@ void StepThread::step(int steps) {
 bool StepThread::hasten(TimeNs most_early_ns, TimeNs most_step_ns) {
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock || took_ns_ > most_step_ns || clock_.stands()) return false;
-  const int due = pacer_.take(clock_.now());
-  step(due);
-  const bool early = pacer_.take_early(clock_.now(), most_early_ns);
-  if (early) step(1);
-  return early || due > 0;
+  const TimeNs begun_ns = clock_.now();  // what is due later is the thread's
+  bool taken = false;
+  for (int due = pacer_.take(begun_ns); due > 0; due = pacer_.take(begun_ns)) {
+    step(due);
+    taken = true;
+  }
+  if (!pacer_.take_early(clock_.now(), most_early_ns)) return taken;
+  step(1);
+  return true;
 }
 
 StepPacer::Counts StepThread::counts() const {

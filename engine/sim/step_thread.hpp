@@ -22,7 +22,7 @@ class StepThread {
 
   // Ends after the steps at hand; counts() are final then. The owner's thread.
   void stop();
-  // Takes the steps that are due, and the next one if it is due within most_early_ns, here and now:
+  // Takes all steps that are due, and the next one if it is due within most_early_ns, here and now:
   // a step before its time. False, and no step: time stands, a step runs on the thread just now, or
   // the last one took longer than most_step_ns. Any thread.
   bool hasten(TimeNs most_early_ns, TimeNs most_step_ns);

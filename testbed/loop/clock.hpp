@@ -20,13 +20,13 @@ struct FrameTime {
 
 class Clock {
  public:
+  enum class Frames { kSteps, kPictures };
   // The host's. If a display says when it shows the frames, their times are the display's, but
   // those of one whose time stands go on by the host's after a second.
   // Otherwise a frame is due each period. After a delay, steps are caught up (sim::StepPacer);
   // pictures are not, so that a late one does not make the next ones hurry. Time runs on over
   // what is dropped. run: that a person may stop or speed up, on which the frames' times are; it
   // outlives this.
-  enum class Frames { kSteps, kPictures };
   static Clock real(double start_s, double period_s, Frames frames = Frames::kSteps,
                     sim::RunClock* run = nullptr);
   // Frame k is at start_s + k * period_s. Nothing waits.

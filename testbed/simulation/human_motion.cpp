@@ -266,19 +266,21 @@ diver::HumanInputs acting_inputs(const PhysicsHuman& human, const DiverInputs& i
   const std::uint64_t parts = moved_parts(inputs, head, hands, reaches, able.conscious);
   const bool others = another(DiverGroup::kBody) || another(DiverGroup::kHands) ||
                       another(DiverGroup::kHead) || parts != state.ease.parts;
-  const auto place_limbs = [&](diver::JointRotations joints) {
-    follow_tracking(human, inputs, head, hands, dt_s, state.human, state.sides, joints);
+  const auto place_limbs = [&](diver::JointRotations& joints) {
+    if (hands || head)
+      follow_tracking(human, inputs, head, hands, dt_s, state.human, state.sides, joints);
     if (reaches) reach_out(human, *able.hand_to_m, state.human, joints);
-    return joints;
   };
-  // What is eased begins on its own side, and does not swing on top of that.
+  // Where the ease brings limbs to another posture, elbows and spine are at once on the side that
+  // this posture has: two turns at a time would be too fast.
   if (others) state.ease.paces = {}, state.sides = {};
   const diver::JointRotations unplaced = out.joints;
-  out.joints = place_limbs(unplaced);
+  place_limbs(out.joints);
   const bool jumped = count_jumps(inputs, others ? state.groups : before, out.joints, dt_s, state);
-  if (jumped) {
+  if (jumped && (hands || head)) {
     state.sides = {};
-    out.joints = place_limbs(unplaced);
+    out.joints = unplaced;
+    place_limbs(out.joints);
   }
   if (others || jumped) begin_ease(state.ease, state.human.held.joints, out.joints, dt_s);
   state.ease.parts = parts;

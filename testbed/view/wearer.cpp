@@ -30,20 +30,14 @@ constexpr double kStageTurn_rad_s = radians(60.0), kLongestStageTurn_s = 0.1;
 // A wearer who looks farther off the body than a neck turns brings the body round.
 constexpr double kNeck_rad = radians(75.0), kAhead_rad = radians(20.0);
 
-// Within this time a limb comes from where it is to where it is tracked, or a hand far off later,
-// at a swimmer's pace (simulation/joint_ease.hpp): slowly enough that the water turns the body
-// little.
+// A limb comes from where it is to where it is tracked in this time, and a hand that is far off in
+// longer, at a swimmer's pace (simulation/joint_ease.hpp). So slow a limb turns the body little.
 constexpr double kEase_s = 1.0;
 constexpr double kSteepest = 1.5;  // slope of smoothstep in its middle
 
 // From 0 to 1, without a jolt at either end.
 double eased(double since_s) {
   return glm::smoothstep(0.0, kEase_s, since_s);
-}
-
-// From body axes to a standing person's, and back (diver/frames.hpp).
-Vec3 other_axes(const Vec3& v) {
-  return {v.y, v.x, -v.z};
 }
 
 double most_climb_m_s(const DiveInput& input) {
@@ -61,7 +55,7 @@ Wearer::Wearer(LivePhysics& physics)
   const diver::Body& body = human().body;
   const Vec3 eyes =
       diver::body_from_eyes(body, diver::posture_of(body, diver::straight_joints(), {})).position_m;
-  eyes_m_ = other_axes(eyes);
+  eyes_m_ = diver::standing_axes(eyes);
 }
 
 // The wearer begins facing where the diver's crown points, of a swimmer, or the chest, of one
@@ -199,7 +193,7 @@ Wearer::Begun Wearer::begin_hand(bool right, const Pose& tracked, double scene_t
   const diver::Posture posture = diver::posture_of(human().body, state().human.limbs.rotation, {});
   const Pose from = riding(world_from_wrist(human(), state(), right));
   const auto round = [&](const Vec3& place_m) {
-    return diver::round_shoulder(posture, right, other_axes(place_m));
+    return diver::round_shoulder(posture, right, diver::standing_axes(place_m));
   };
   Begun begun{.at_s = scene_time_s, .off = round(from.position_m) - round(tracked.position_m)};
   begun.turned_off = glm::normalize(glm::conjugate(tracked.rotation) * from.rotation);
@@ -218,8 +212,9 @@ Pose Wearer::eased_hand(bool right, const Pose& tracked, const Begun& begun,
   const double share = glm::smoothstep(0.0, begun.lasts_s, left_s);
   const diver::Posture posture = diver::posture_of(human().body, state().human.limbs.rotation, {});
   const Vec3 round =
-      diver::round_shoulder(posture, right, other_axes(tracked.position_m)) + share * begun.off;
-  return {other_axes(diver::wrist_round_shoulder(posture, right, round)),
+      diver::round_shoulder(posture, right, diver::standing_axes(tracked.position_m)) +
+      share * begun.off;
+  return {diver::standing_axes(diver::wrist_round_shoulder(posture, right, round)),
           tracked.rotation * glm::slerp(Quat(1.0, 0.0, 0.0, 0.0), begun.turned_off, share)};
 }
 

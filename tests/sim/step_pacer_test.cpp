@@ -148,6 +148,31 @@ TEST(StepThread, HastenedStepsAreNeitherSkippedNorRunTwice) {
     ASSERT_EQ(due[i], begun_ns + static_cast<TimeNs>(i + 1) * 1'000'000);
 }
 
+// A picture after a stall shows the newest step, not one of the first that are caught up.
+TEST(StepThread, AllThatIsLateIsHastened) {
+  class Stalled final : public StepClock {
+   public:
+    TimeNs now() override { return at_ns; }
+    void wait_until(TimeNs) override {
+      waits = true;
+      while (!ends) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    std::atomic<TimeNs> at_ns{0};
+    std::atomic<bool> waits{false}, ends{false};
+  } clock;
+  std::vector<TimeNs> due;
+  StepThread thread(clock, StepPacer(1000.0, 4, 0, 100'000'000),
+                    [&](TimeNs due_ns) { due.push_back(due_ns); });
+  while (!clock.waits) std::this_thread::yield();
+  clock.at_ns = 80'300'000;
+  EXPECT_TRUE(thread.hasten(1'000'000, kSecond));
+  ASSERT_EQ(due.size(), 81u);
+  for (std::size_t i = 0; i < due.size(); ++i)
+    EXPECT_EQ(due[i], static_cast<TimeNs>(i + 1) * 1'000'000);
+  EXPECT_EQ(thread.counts().dropped, 0u);
+  clock.ends = true;
+}
+
 TEST(StepThread, NoStepIsHastenedWhileTimeStandsOrStepsAreSlow) {
   class Standing final : public StepClock {
    public:

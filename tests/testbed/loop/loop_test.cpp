@@ -233,7 +233,7 @@ TEST(LoopClock, ARealClockFollowsTheDisplayOrWaitsAndDropsWhatIsTooLate) {
   for (int i = 0; i < 5; ++i) waiting.next(std::nullopt);
   EXPECT_GE(now_ns() - begun_ns, 50'000'000);
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  // Of 30 late steps those of the last 100 ms are caught up.
+  // 30 steps are late. The 10 of the last 100 ms are caught up; the others are dropped.
   for (int i = 0; i < 10; ++i) waiting.next(std::nullopt);
   EXPECT_GE(waiting.dropped(), 20u);
 }
