@@ -23,7 +23,7 @@ constexpr VkAccessFlags2 kStorageReadWrite =
 
 // In the order of enum Access. Depth layouts are the combined ones: they are valid for depth-only
 // formats and need no feature (separateDepthStencilLayouts).
-constexpr std::array<AccessInfo, 18> kTable = {{
+constexpr std::array<AccessInfo, 19> kTable = {{
     {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, kColorReadWrite,
      VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, 0, true,
      "color attachment"},
@@ -37,6 +37,9 @@ constexpr std::array<AccessInfo, 18> kTable = {{
      VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
      VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, 0, false,
      "depth test and sampled"},
+    {VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_USAGE_SAMPLED_BIT, 0, false,
+     "sampled vertex"},
     {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_USAGE_SAMPLED_BIT, 0, false,
      "sampled fragment"},

@@ -26,7 +26,8 @@ enum class Access {
   kDepthAttachment,      // write (and test)
   kDepthTest,            // read-only depth attachment
   kDepthTestAndSampled,  // read-only depth attachment that the fragment shader also samples
-  kSampledFragment,      // read by texture or texelFetch
+  kSampledVertex,        // read by texture or texelFetch
+  kSampledFragment,
   kSampledCompute,
   kStorageReadCompute,   // buffer or image
   kStorageWriteCompute,  // write; earlier contents may be read (atomics)

@@ -1,5 +1,5 @@
-// WaterPasses: particles over the shaded picture, one instance each: bubbles, then all others.
-#include <algorithm>
+// WaterPasses: particles over the shaded picture, a triangle each, kind by kind.
+#include <array>
 
 #include "engine/render/lighting.hpp"
 #include "engine/render/raster_draws.hpp"
@@ -12,10 +12,44 @@ namespace neritic::render {
 namespace {
 
 // A view mask has six bits at most. cascades: of the sun's maps, where there are shafts.
-std::uint32_t pipeline_key(std::uint32_t view_mask, bool of_bubbles, const ShaftInputs* shafts) {
+std::uint32_t pipeline_key(std::uint32_t view_mask, std::uint32_t kind, const ShaftInputs* shafts) {
   static_assert(shared::kMaxViews < 24 && shared::kMaxCascades < 8);
-  return view_mask | (of_bubbles ? 1u << 31 : 0u) |
-         (shafts ? 1u << 30 | shafts->cascade_count << 24 : 0u);
+  return view_mask | kind << 28 | (shafts ? 1u << 27 | shafts->cascade_count << 24 : 0u);
+}
+
+// The sun's maps and the net of light. In the place of one that is missing something is bound,
+// which the shader's constants keep it from reading.
+std::array<graph::ImageHandle, 2> shaft_images(const ShaftInputs& shafts, const GBuffer& gbuffer) {
+  return {shafts.cascades ? shafts.cascades : gbuffer.normal,
+          shafts.caustics ? shafts.caustics : gbuffer.normal};
+}
+
+std::span<const std::uint32_t> fragment_code_of(std::uint32_t kind) {
+  switch (kind) {
+    case shared::kParticleBubble:
+      return shaders::kParticleBubbleFrag;
+    case shared::kParticleBubbleSpot:
+      return shaders::kParticleBubbleSpotFrag;
+    case shared::kParticleSilt:
+      return shaders::kParticleSiltFrag;
+    default:
+      return shaders::kParticleSnowFrag;
+  }
+}
+
+// Particles of one kind in a row.
+struct Run {
+  std::uint32_t kind, first, count;
+};
+
+std::vector<Run> runs_of(std::span<const shared::Particle> particles) {
+  std::vector<Run> runs;
+  for (std::uint32_t i = 0; i < particles.size(); ++i) {
+    const std::uint32_t kind = particles[i].kind & shared::kParticleKindMask;
+    if (runs.empty() || runs.back().kind != kind) runs.push_back({kind, i, 0});
+    ++runs.back().count;
+  }
+  return runs;
 }
 
 }  // namespace
@@ -30,24 +64,19 @@ Result<graph::ImageHandle> WaterPasses::declare_particles(
                 gpu::Sampler::create(device_, {.name = "particles' net", .mipmapped = false}));
   }
   const std::vector<std::uint32_t> masks = view_masks_of(gbuffer.layers, device_);
-  const auto bubbles = static_cast<std::uint32_t>(
-      std::ranges::find_if(particles,
-                           [](const shared::Particle& p) {
-                             return (p.kind & shared::kParticleKindMask) != shared::kParticleBubble;
-                           }) -
-      particles.begin());
-  const std::uint32_t others = static_cast<std::uint32_t>(particles.size()) - bubbles;
+  const std::vector<Run> runs = runs_of(particles);
   for (const std::uint32_t mask : masks)
-    for (const bool of_bubbles : {true, false}) {
-      gpu::Pipeline& pipeline = particles_[pipeline_key(mask, of_bubbles, shafts)];
-      if (pipeline || (of_bubbles ? bubbles : others) == 0) continue;
+    for (const Run& run : runs) {
+      gpu::Pipeline& pipeline = particles_[pipeline_key(mask, run.kind, shafts)];
+      if (pipeline) continue;
       gpu::GraphicsPipelineDesc desc;
       desc.name = "particles";
-      desc.vertex_code = shaders::kParticlesVert;
-      desc.fragment_code = shafts ? shaders::kParticlesLitFrag : shaders::kParticlesFrag;
+      desc.vertex_code = shafts ? shaders::kParticleLitVert : shaders::kParticleVert;
+      desc.fragment_code = fragment_code_of(run.kind);
       desc.layout.bindings = {{shared::kParticleViews, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
                               {shared::kParticleLighting, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
-                              {shared::kParticleDepth, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}};
+                              {shared::kParticleDepth, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                              {shared::kParticleStream, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
       if (shafts)
         for (const auto& [binding, type] :
              {std::pair{shared::kParticleSun, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
@@ -55,18 +84,9 @@ Result<graph::ImageHandle> WaterPasses::declare_particles(
               std::pair{shared::kParticleCaustics, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}})
           desc.layout.bindings.push_back({binding, type});
       desc.layout.push_constant_bytes = sizeof(shared::ParticlePush);
-      desc.constants = {{shared::kSpecBubbles, of_bubbles},
+      desc.constants = {{shared::kSpecParticleKind, run.kind},
                         {shared::kSpecParticleMultiview, mask != 0}};
       if (shafts) desc.constants.push_back({shared::kSpecParticleCascades, shafts->cascade_count});
-      desc.streams = {
-          {sizeof(shared::Particle),
-           {{shared::kParticlePosition, VK_FORMAT_R32G32B32A32_SFLOAT,
-             offsetof(shared::Particle, position)},
-            {shared::kParticleMoved, VK_FORMAT_R32G32B32A32_SFLOAT,
-             offsetof(shared::Particle, moved)},
-            {shared::kParticleKind, VK_FORMAT_R32G32_UINT, offsetof(shared::Particle, kind)}},
-           true}};
-      desc.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP;
       desc.color_formats = {kHdrFormat};
       desc.depth_format = kDepthFormat;
       desc.depth_write = false;
@@ -85,11 +105,10 @@ Result<graph::ImageHandle> WaterPasses::declare_particles(
         data.hdr = builder.write(hdr, graph::Access::kColorAttachment);
         builder.read(gbuffer.depth, graph::Access::kDepthTestAndSampled);
         if (shafts)
-          for (const graph::ImageHandle image :
-               {shafts->cascades, shafts->caustics ? shafts->caustics : gbuffer.normal})
-            if (image) builder.read(image, graph::Access::kSampledFragment);
+          for (const graph::ImageHandle image : shaft_images(*shafts, gbuffer))
+            builder.read(image, graph::Access::kSampledVertex);
       },
-      [this, masks, gbuffer, lighting, shutter, bubbles, others, &views, &particles,
+      [this, masks, gbuffer, lighting, shutter, runs, &views, &particles,
        inputs = shafts ? std::optional(*shafts) : std::nullopt](const Data& data,
                                                                 graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
@@ -100,20 +119,19 @@ Result<graph::ImageHandle> WaterPasses::declare_particles(
                         commands.upload(std::span<const shared::View>(gpu_views(views)))),
             bound_slice(shared::kParticleLighting, commands.upload(&lighting, sizeof lighting)),
             gpu::bound_texel_image(shared::kParticleDepth, context.image(gbuffer.depth).view(),
-                                   depth_layout)};
+                                   depth_layout),
+            bound_slice(shared::kParticleStream,
+                        commands.upload(std::span<const shared::Particle>(particles)))};
         const ShaftInputs* const lit = inputs ? &*inputs : nullptr;
         if (lit) {
-          // The shader's constants keep it from reading what is bound in the place of others.
-          const bool maps = bool(lit->cascades);
+          const auto [cascades, caustics] = shaft_images(*lit, gbuffer);
           set0.push_back(
               bound_slice(shared::kParticleSun, commands.upload(&lit->sun, sizeof lit->sun)));
-          set0.push_back(gpu::bound_texel_image(
-              shared::kParticleCascades, context.image(maps ? lit->cascades : gbuffer.depth).view(),
-              maps ? graph::access_info(graph::Access::kSampledFragment).layout : depth_layout));
+          set0.push_back(
+              gpu::bound_texel_image(shared::kParticleCascades, context.image(cascades).view(),
+                                     graph::access_info(graph::Access::kSampledVertex).layout));
           set0.push_back(gpu::bound_texture(
-              shared::kParticleCaustics,
-              context.image(lit->caustics ? lit->caustics : gbuffer.normal).view(),
-              tile_sampler_.handle()));
+              shared::kParticleCaustics, context.image(caustics).view(), tile_sampler_.handle()));
         }
         const VkRenderingAttachmentInfo color =
             attachment(context.image(data.hdr), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
@@ -121,22 +139,17 @@ Result<graph::ImageHandle> WaterPasses::declare_particles(
         VkRenderingAttachmentInfo depth =
             attachment(context.image(gbuffer.depth), depth_layout, VK_ATTACHMENT_LOAD_OP_LOAD);
         depth.storeOp = VK_ATTACHMENT_STORE_OP_NONE;
-        const gpu::UploadSlice stream =
-            commands.upload(std::span<const shared::Particle>(particles));
         const shared::ParticlePush push{Vec2f(gbuffer.width, gbuffer.height), shutter};
         for (const std::uint32_t mask : masks) {
           begin_rendering(context.cmd(), gbuffer, mask, std::span(&color, 1), depth);
           vkCmdSetCullMode(context.cmd(), VK_CULL_MODE_NONE);
           vkCmdSetFrontFace(context.cmd(), VK_FRONT_FACE_COUNTER_CLOCKWISE);
-          vkCmdBindVertexBuffers(context.cmd(), 0, 1, &stream.buffer, &stream.offset);
-          for (const bool of_bubbles : {true, false}) {
-            const std::uint32_t count = of_bubbles ? bubbles : others;
-            if (count == 0) continue;
-            const gpu::Pipeline& pipeline = particles_.at(pipeline_key(mask, of_bubbles, lit));
+          for (const Run& run : runs) {
+            const gpu::Pipeline& pipeline = particles_.at(pipeline_key(mask, run.kind, lit));
             commands.bind_pipeline(pipeline);
             commands.bind(pipeline, set0);
             commands.push(pipeline, push);
-            vkCmdDraw(context.cmd(), 4, count, 0, of_bubbles ? 0 : bubbles);
+            vkCmdDraw(context.cmd(), 3 * run.count, 1, 3 * run.first, 0);
           }
           vkCmdEndRendering(context.cmd());
         }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "engine/core/random.hpp"
 #include "engine/render/bubble_field.hpp"
@@ -17,13 +18,22 @@ std::uint32_t wobbling(std::uint32_t look, std::uint32_t swing) {
   return (look & ~255u) | ((look + swing) & 255u);
 }
 
-// Particles in a row that are drawn together; bubbles come before all others.
+// Kinds have pipelines of their own, so they follow one another. The errors where snow or silt
+// floats behind a bubble, and snow among silt, are too small to be seen.
+enum class Layer { kBubbleSpots, kBubbles, kSnowBehind, kSilt, kSnowBefore };
+
+Layer layer_of(std::uint32_t kind) {
+  if (kind == shared::kParticleSilt) return Layer::kSilt;
+  return kind == shared::kParticleBubble ? Layer::kBubbles : Layer::kBubbleSpots;
+}
+
+// Particles in a row that are drawn together.
 struct Drawn {
-  bool bubble;
+  Layer layer;
   double distance2_m2;
   std::size_t first, count;
   bool operator<(const Drawn& other) const {
-    if (bubble != other.bubble) return bubble;
+    if (layer != other.layer) return layer < other.layer;
     return distance2_m2 != other.distance2_m2 ? distance2_m2 > other.distance2_m2
                                               : first < other.first;
   }
@@ -83,16 +93,18 @@ ViewParticles view_particles(const scene::MotionSource& motion, SnowField& snow,
   const SphereCulling sight(views);
   // Before a lamp a grain may be far brighter than the water.
   const bool dim = motion.scene().lamps.empty() && motion.scene().model_lights.empty();
+  const double pixels = pixels_at_a_metre(views);
   std::vector<shared::Particle> placed;
   std::vector<Drawn> drawn;
   if (water.snow) {
     std::vector<SnowField::Run> cells;
-    snow.place(*water.snow, seed, sight, time_s, snow_share, dim ? pixels_at_a_metre(views) : 0.0,
-               placed, cells);
+    snow.place(*water.snow, seed, sight, time_s, snow_share, dim ? pixels : 0.0, placed, cells);
     for (const SnowField::Run& cell : cells)
-      drawn.push_back({false, cell.distance2_m2, cell.first, cell.count});
+      drawn.push_back({Layer::kSnowBefore, cell.distance2_m2, cell.first, cell.count});
     out.shutter_s = water.snow->shutter_s;
   }
+  const std::size_t snow_cells = drawn.size();
+  std::vector<double> silt_m2;  // squared distances
   std::vector<WorldParticle> others;
   for (std::size_t i = 0; i < water.bubbles.size(); ++i)
     bubbles.append(motion, water.bubbles[i], i, seed, time_s, others, &sight);
@@ -102,20 +114,29 @@ ViewParticles view_particles(const scene::MotionSource& motion, SnowField& snow,
     const Vec3 at = particle.position_m - sight.origin_m();
     if (!(particle.opacity > 0.0 && sight.may_see(at, particle.radius_m + kSpotRoom_m))) continue;
     const bool bubble = particle.kind == shared::kParticleBubble;
-    drawn.push_back({bubble, glm::dot(at, at), placed.size(), 1});
+    const double distance2_m2 = glm::dot(at, at);
+    const bool spot =
+        bubble && particle.radius_m * pixels < shared::kBubbleSpot_px * std::sqrt(distance2_m2);
+    const std::uint32_t kind = spot ? shared::kParticleBubbleSpot : particle.kind;
+    drawn.push_back({layer_of(kind), distance2_m2, placed.size(), 1});
+    if (drawn.back().layer == Layer::kSilt) silt_m2.push_back(distance2_m2);
     placed.push_back({Vec3f(at), static_cast<float>(particle.radius_m),
                       Vec3f(particle.velocity_m_s * out.shutter_s),
-                      static_cast<float>(particle.opacity), particle.kind,
+                      static_cast<float>(particle.opacity), kind,
                       bubble ? wobbling(particle.seed, swing) : particle.seed});
   }
-  // Bubbles first: they have a pipeline of their own. The error where silt or snow floats behind
-  // a bubble is too small to be seen.
+  if (!silt_m2.empty()) {
+    const auto middle = silt_m2.begin() + static_cast<std::ptrdiff_t>(silt_m2.size() / 2);
+    std::ranges::nth_element(silt_m2, middle);
+    for (Drawn& snow_cell : std::span(drawn).first(snow_cells))
+      if (snow_cell.distance2_m2 > *middle) snow_cell.layer = Layer::kSnowBehind;
+  }
   std::ranges::sort(drawn, std::less{});
   out.particles.reserve(placed.size());
   for (const Drawn& some : drawn)
     out.particles.insert(out.particles.end(), placed.begin() + std::ptrdiff_t(some.first),
                          placed.begin() + std::ptrdiff_t(some.first + some.count));
-  if (spot_px > 0.0) thin_out(out.particles, spot_px, pixels_at_a_metre(views));
+  if (spot_px > 0.0) thin_out(out.particles, spot_px, pixels);
   if (skylight)
     for (shared::Particle& particle : out.particles) {
       const double open = skylight->at(sight.origin_m() + Vec3(particle.position));

@@ -22,7 +22,7 @@ std::uint64_t word(std::int64_t cell) {
 
 // Whether a grain, lit as the water about it is, changes a pixel by less than half a level of 255:
 // its soft spot has twice the light of its middle spread over a disk of 0.75 pixels at least
-// (shaders/particles.vert).
+// (shaders/shared/particle_vertex.glsl).
 bool fades_away(double radius_m, double opacity, double range2_m2, double pixels) {
   // With p the square of its radius in pixels: 2 p / (p + 0.56) opacity < 0.003, without a
   // division.

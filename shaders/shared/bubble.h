@@ -6,10 +6,6 @@
 
 NERITIC_SHARED_BEGIN
 
-// Specialisation constants of the particles pass: the bubbles, else all others; whether it has many
-// views.
-NERITIC_CONST uint kSpecBubbles = 0;
-NERITIC_CONST uint kSpecParticleMultiview = 1;
 // Wobbles of a bubble a second (ellipsoidal ones swing some five times: Clift, Grace and Weber
 // 1978, ch. 7).
 NERITIC_CONST float kWobble_hz = 5.0f;

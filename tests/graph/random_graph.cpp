@@ -8,10 +8,10 @@
 namespace neritic::graph {
 namespace {
 
-constexpr Access kImageReads[] = {Access::kDepthTest,          Access::kDepthTestAndSampled,
-                                  Access::kSampledFragment,    Access::kSampledCompute,
-                                  Access::kStorageReadCompute, Access::kStorageReadFragment,
-                                  Access::kTransferRead};
+constexpr Access kImageReads[] = {Access::kDepthTest,           Access::kDepthTestAndSampled,
+                                  Access::kSampledVertex,       Access::kSampledFragment,
+                                  Access::kSampledCompute,      Access::kStorageReadCompute,
+                                  Access::kStorageReadFragment, Access::kTransferRead};
 constexpr Access kImageWrites[] = {Access::kColorAttachment, Access::kDepthAttachment,
                                    Access::kStorageWriteCompute, Access::kTransferWrite};
 constexpr Access kBufferReads[] = {Access::kStorageReadCompute,  Access::kStorageReadVertex,

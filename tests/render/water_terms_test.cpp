@@ -402,6 +402,55 @@ TEST(Bubbles, TurnLightAsTwoRefractionsDo) {
   }
 }
 
+// A kind after the other, for each has a pipeline of its own: small bubbles, wide ones, snow behind
+// the silt, silt, snow before it.
+TEST(Particles, KindsFollowOneAnotherAndSmallBubblesAreSpots) {
+  scene::Scene scene;
+  scene.objects.resize(1);
+  scene.water.emplace();
+  scene.water->snow = scene::Snow{.density_m3 = 200.0, .range_m = 3.0};
+  scene.water->bubbles.emplace_back().object = 0;
+  scene::SiltSource& source = scene.water->silt.emplace_back();
+  source.object = 0;
+  source.bed_depth_m = 10.0;
+  class Goes final : public scene::SimulatedMotion {
+   public:
+    std::optional<scene::MotionAt> at(std::size_t, double) const override { return std::nullopt; }
+    std::optional<scene::FollowedPlace> followed(std::size_t, int, const Vec3&,
+                                                 double time_s) const override {
+      return scene::FollowedPlace{Vec3(0.1 * time_s - 5.0, -9.7, 0.0), 0.3};
+    }
+  } goes;
+  ViewDesc view;
+  view.world_from_view.position_m = Vec3(0.0, -9.5, 2.0);
+  const ViewSet views{.width = 600, .height = 600, .views = {view}};
+  SnowField snow;
+  BubbleField bubbles;
+  const std::vector<shared::Particle> seen =
+      view_particles(scene::MotionSource(scene, &goes), snow, bubbles, 7, views, 50.0).particles;
+  std::vector<std::uint32_t> kinds;
+  double behind_m = 1e9, before_m = 0.0;  // of the snow
+  const double pixels = 600.0 / (view.tangents.right - view.tangents.left);
+  for (const shared::Particle& particle : seen) {
+    const std::uint32_t kind = particle.kind & shared::kParticleKindMask;
+    if (kinds.empty() || kinds.back() != kind) kinds.push_back(kind);
+    const double range_m = glm::length(Vec3(particle.position));
+    if (kind == shared::kParticleSnow)
+      (kinds.size() < 4 ? behind_m : before_m) =
+          kinds.size() < 4 ? std::min(behind_m, range_m) : std::max(before_m, range_m);
+    if (kind == shared::kParticleBubble || kind == shared::kParticleBubbleSpot) {
+      const bool spot = particle.radius_m * pixels / range_m < shared::kBubbleSpot_px;
+      EXPECT_EQ(kind == shared::kParticleBubbleSpot, spot)
+          << particle.radius_m << " at " << range_m;
+    }
+  }
+  EXPECT_EQ(kinds, (std::vector<std::uint32_t>{shared::kParticleBubbleSpot, shared::kParticleBubble,
+                                               shared::kParticleSnow, shared::kParticleSilt,
+                                               shared::kParticleSnow}));
+  // Cells of half a metre are on one side or the other.
+  EXPECT_GT(behind_m, before_m - 1.0);
+}
+
 TEST(Silt, IsKickedUpOnlyNearTheBedAndSettles) {
   scene::Scene scene;
   scene.objects.resize(1);
