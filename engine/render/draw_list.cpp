@@ -163,7 +163,7 @@ class DrawListBuilder {
       const double order_m = blend ? center_m : nearness(center_m, own_radius_m * stretch);
       std::uint32_t level = 0;
       if (options_.mesh_error_px > 0.0 && bounded && !blend) {
-        const double px_m = pixels_a_metre(center, own_radius_m * stretch);
+        const double px_m = pixels_a_metre(m, center, job ? job->half_m : primitive.half_m);
         if (2.0 * own_radius_m * stretch * px_m <
             std::max(0.5 * options_.mesh_error_px, options_.least_px))
           continue;
@@ -216,11 +216,14 @@ class DrawListBuilder {
     out_.highest_m = std::max(out_.highest_m, center.y + reach_m);
   }
 
-  // The most pixels that a metre takes at the nearest part of a ball, in any view.
-  double pixels_a_metre(const Vec3& center, double radius_m) const {
+  // The most pixels that a metre takes at the nearest part of a box round a centre, in any view.
+  double pixels_a_metre(const Mat4& m, const Vec3& center, const Vec3& half_m) const {
     double most = 0.0;
     for (const Eye& eye : eyes_) {
-      const double near_m = glm::dot(center - eye.position_m, eye.ahead) - radius_m;
+      const double reach_m = std::abs(glm::dot(eye.ahead, Vec3(m[0]))) * half_m.x +
+                             std::abs(glm::dot(eye.ahead, Vec3(m[1]))) * half_m.y +
+                             std::abs(glm::dot(eye.ahead, Vec3(m[2]))) * half_m.z;
+      const double near_m = glm::dot(center - eye.position_m, eye.ahead) - reach_m;
       most = std::max(most, eye.pixels / std::max(near_m, eye.near_m));
     }
     return most;

@@ -63,7 +63,8 @@ void append_weights(std::vector<float>& out, const scene::ModelPose& pose, std::
   for (std::uint32_t i = 0; i < count; ++i) out.push_back(i < weights.size() ? weights[i] : 0.0f);
 }
 
-// A ball round what these joints' matrices bring their parts to. Weights sum to 1 but for rounding.
+// A ball and a box round what these joints' matrices bring their parts to. Weights sum to 1 but for
+// rounding.
 void bound_job(DeformJob& job, const GpuPrimitive& primitive, const std::vector<Mat4f>& joints,
                std::size_t first) {
   scene::Bounds box;
@@ -77,6 +78,7 @@ void bound_job(DeformJob& job, const GpuPrimitive& primitive, const std::vector<
   }
   if (box.empty() || !is_finite(box.min) || !is_finite(box.max)) return;
   job.center_m = 0.5 * (box.min + box.max);
+  job.half_m = 0.5 * (box.max - box.min) * 1.01 + 1e-4;
   job.radius_m = 0.5 * glm::length(box.max - box.min) * 1.01 + 1e-4;
 }
 

@@ -15,9 +15,11 @@ namespace neritic::render {
 struct DeformJob {
   std::uint32_t group = 0, object = 0, node = 0;
   bool headless = false;  // beside the whole one
-  // A ball in the object's frame that nothing of it leaves; negative: none is known.
+  // A ball in the object's frame that nothing of it leaves, and half of a box round its centre that
+  // nothing of it leaves either; a negative radius: none is known.
   Vec3 center_m{0.0};
   double radius_m = -1.0;
+  Vec3 half_m{0.0};
   shared::DeformPush push{};
 };
 
