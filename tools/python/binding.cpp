@@ -9,6 +9,7 @@
 #include <chrono>
 
 #include "engine/core/refusal.hpp"
+#include "engine/net/array_ring.hpp"
 #include "testbed/envs/vector_env.hpp"
 #include "testbed/world/world.hpp"
 
@@ -117,6 +118,33 @@ py::array pixels_of(py::object owner) {
         return py::array_t<T>(shape, data.data(), owner);
       },
       image.pixels);
+}
+
+// A server's memory of arrays. Whoever opens one must call forking() before the process forks.
+using Ring = net::ArrayRingReader;
+
+// An array of a ring in its place: the server leaves it alone until nobody has the array any more.
+// None: it was overwritten, or much is lent.
+py::object lend(py::object owner, std::uint64_t position, const std::vector<py::ssize_t>& shape,
+                const py::dtype& type) {
+  struct Lent {
+    py::object owner;
+    Ring::Loan loan;
+    ~Lent() { owner.cast<Ring&>().give_back(loan); }
+  };
+  auto size = static_cast<std::size_t>(type.itemsize());
+  for (const py::ssize_t length : shape)
+    if (length < 0 || __builtin_mul_overflow(size, static_cast<std::size_t>(length), &size))
+      return py::none();
+  const std::optional<Ring::Loan> loan = owner.cast<Ring&>().lend(position, size);
+  if (!loan) return py::none();
+  const py::capsule base(new Lent{owner, *loan}, [](void* p) { delete static_cast<Lent*>(p); });
+  return py::array(type, shape, loan->bytes.data(), base);
+}
+
+bool read(const Ring& ring, std::uint64_t position, py::array_t<std::uint8_t>& to) {
+  const auto size = static_cast<std::size_t>(to.size());
+  return ring.read(position, {reinterpret_cast<std::byte*>(to.mutable_data()), size});
 }
 
 struct PyWorld {
@@ -258,6 +286,13 @@ void bind_world(py::module_& m) {
       .def_readonly("azimuth", &WorldImage::azimuth)
       .def_readonly("elevation", &WorldImage::elevation)
       .def_property_readonly("pixels", &pixels_of);
+  py::class_<Ring>(m, "Ring")
+      .def(py::init([](const std::string& path) { return value_of(Ring::open(path)); }))
+      .def_property_readonly("token", &Ring::token)
+      .def("prepare", &Ring::prepare)
+      .def("lend", &lend)
+      .def("read", &read)
+      .def("forking", &Ring::forking);
   py::class_<PyWorld>(m, "World")
       .def(py::init([](const std::string& path, std::optional<std::uint64_t> seed, bool real_time,
                        unsigned threads, const std::string& device, bool validation) {

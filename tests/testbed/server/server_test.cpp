@@ -409,5 +409,66 @@ TEST(ArrayRing, GivesBackWhatWasPutUntilItIsOverwritten) {
   EXPECT_FALSE(net::ArrayRingReader::open("/dev/null").ok());
 }
 
+TEST(ArrayRing, LeavesALentArrayAloneUntilItIsGivenBack) {
+  const auto ring = net::ArrayRing::create(1 << 16).value();
+  const auto reader = net::ArrayRingReader::open(ring->path()).value();
+  const auto other = net::ArrayRingReader::open(ring->path()).value();
+  const auto filled = [](int with) {
+    return std::vector<std::byte>(10000, static_cast<std::byte>(with));
+  };
+  const std::uint64_t first = ring->put(filled(1)).value();
+  const auto loan = reader->lend(first, 10000);
+  ASSERT_TRUE(loan);
+  // What the reader writes, it alone sees.
+  loan->bytes[3] = std::byte{77};
+  std::vector<std::byte> got(10000);
+  ASSERT_TRUE(other->read(first, got));
+  EXPECT_EQ(got, filled(1));
+  // A quarter of 65536 bytes is lent to one reader at most.
+  EXPECT_FALSE(reader->lend(ring->put(filled(2)).value(), 10000));
+  for (int i = 0; i < 50; ++i) {
+    const std::uint64_t at = ring->put(filled(i)).value();
+    EXPECT_NE(at % (1 << 16), 0u);
+    ASSERT_TRUE(other->read(at, got));
+    EXPECT_EQ(got, filled(i));
+    loan->bytes[3] = std::byte{1};
+    EXPECT_TRUE(std::ranges::equal(loan->bytes, filled(1)));
+  }
+  // Too late for an array that was overwritten, or that lies nowhere.
+  EXPECT_FALSE(other->lend(first, 10000));
+  EXPECT_FALSE(other->lend(ring->put(filled(3)).value() + 64, 10000));
+  reader->give_back(*loan);
+  bool again = false;
+  for (int i = 0; i < 5; ++i) {
+    const std::uint64_t at = ring->put(filled(90 + i)).value();
+    if (at % (1 << 16) != 0) continue;
+    again = true;
+    const auto second = reader->lend(at, 10000);
+    ASSERT_TRUE(second);
+    EXPECT_TRUE(std::ranges::equal(second->bytes, filled(90 + i)));
+    reader->give_back(*second);
+  }
+  EXPECT_TRUE(again);
+}
+
+TEST(ArrayRing, HeldByReadersItTakesNoMoreUntilTheyEnd) {
+  const auto ring = net::ArrayRing::create(1 << 16).value();
+  const std::vector<std::byte> array(1 << 14);
+  std::vector<std::unique_ptr<net::ArrayRingReader>> readers;
+  for (int i = 0; i < 4; ++i) {
+    readers.push_back(net::ArrayRingReader::open(ring->path()).value());
+    const auto loan = readers.back()->lend(ring->put(array).value(), array.size());
+    ASSERT_TRUE(loan);
+    if (i > 0) continue;
+    // A process that this one forked has it, too.
+    readers.back()->forking();
+    readers.back()->give_back(*loan);
+  }
+  EXPECT_EQ(ring->put(array), std::nullopt);
+  EXPECT_EQ(ring->put(std::vector<std::byte>(1)), std::nullopt);
+  readers.erase(readers.begin() + 2);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(ring->put(array).value() % (1 << 16), 1u << 15);
+}
+
 }  // namespace
 }  // namespace neritic::testbed

@@ -6,7 +6,6 @@ The messages are in testbed/server/PROTOCOL.md. Needs Debian's python3-zmq and p
 from __future__ import annotations
 
 import functools
-import mmap
 import os
 import re
 import socket
@@ -20,6 +19,7 @@ from typing import Any, Mapping, Optional, Sequence, Union, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _core
 from .arguments import number, path, shown, whole, word
 from .errors import BadInput, Error
 from .observations import Pixels, Row, Rows, Truth
@@ -67,32 +67,15 @@ class _Buffers:
         return self._kept[-1]
 
 
-class _Ring:
-    """The server's memory of arrays, mapped."""
+_RINGS: weakref.WeakSet[_core.Ring] = weakref.WeakSet()
 
-    def __init__(self, path: str) -> None:
-        handle = os.open(path, os.O_RDONLY)
-        try:
-            self._map = mmap.mmap(handle, 0, prot=mmap.PROT_READ)
-        finally:
-            os.close(handle)
-        magic, self.token, self.capacity = struct.unpack_from("<8sQQ", self._map)
-        if magic != b"NRTCRNG1" or self.capacity != len(self._map) - 4096:
-            raise OSError("no memory of arrays")
-        self._bytes = np.frombuffer(self._map, np.uint8)
 
-    def prepare(self) -> None:
-        """Touches each page, which costs microseconds the first time, so that no image has to."""
-        self._bytes[::mmap.PAGESIZE].max()
+def _forking() -> None:
+    for ring in _RINGS:
+        ring.forking()
 
-    def read(self, position: int, to: NDArray[np.uint8]) -> bool:
-        """Copies an array; False: it was overwritten meanwhile."""
-        at = 4096 + position % self.capacity
-        if at + to.size > self._bytes.size:
-            return False
-        to[:] = self._bytes[at:at + to.size]
-        claimed, = struct.unpack_from("<Q", self._map, 24)
-        return claimed - position <= self.capacity
+
+os.register_at_fork(before=_forking)
 
 
 def _end(socket: Any, monitor: Any, context: Any) -> None:
@@ -152,7 +135,8 @@ class Core:
         if key is not None and server_key is not None:
             way.curve_serverkey = _key(server_key, "public")
             way.curve_publickey, way.curve_secretkey = _key(key, "public"), _key(key, "secret")
-        self.closed, self.recording, self._next, self._ring = False, False, 0, None
+        self.closed, self.recording, self._next = False, False, 0
+        self._ring: Optional[_core.Ring] = None
         self._stop = False  # a tick that goes on ends after its part
         try:
             way.connect(address)
@@ -256,10 +240,11 @@ class Core:
         if not path or not re.fullmatch(r"/proc/\d+/fd/\d+", path):
             return
         try:
-            ring = _Ring(path)
+            ring = _core.Ring(path)
             self._call("shared", token=ring.token)
-        except (OSError, ValueError, struct.error):
+        except (Error, BadInput):
             return  # another machine or user: arrays come as frames
+        _RINGS.add(ring)
         self._ring = ring
 
     def _rows(self, array: Mapping[str, int], frames: list[bytes]) -> list[Row]:
@@ -288,15 +273,20 @@ class Core:
             self._hash, self._hash_step = answer["hash"], self.step
 
     def _bring(self, images: Sequence[Mapping[str, Any]], frames: list[bytes]) -> None:
-        """The images of an answer, each in memory of this process."""
+        """The images of an answer: where they lie in the server's memory, as long as somebody has them, or copied."""
         for facts in images:
             height, width, channels = facts["shape"]
-            pixels, data = self._buffers.take((height, width) if channels == 1 else (height, width, channels), facts["type"])
-            if "frame" in facts:
-                memoryview(data)[:] = frames[facts["frame"]]
-            elif not self._ring or not self._ring.read(facts["shared"], data):
-                self._lost_here += 1
-                continue
+            shape, kind = (height, width) if channels == 1 else (height, width, channels), facts["type"]
+            pixels = None
+            if self._ring and "shared" in facts:
+                pixels = self._ring.lend(facts["shared"], shape, _dtype(kind))
+            if pixels is None:
+                pixels, data = self._buffers.take(shape, kind)
+                if "frame" in facts:
+                    memoryview(data)[:] = frames[facts["frame"]]
+                elif not self._ring or not self._ring.read(facts["shared"], data):
+                    self._lost_here += 1
+                    continue
             self._images.append(Pixels(pixels, *map(facts.__getitem__, _FACTS)))
 
     # A world's interface.
