@@ -58,6 +58,14 @@ Result<ImageConsumer> ImageConsumer::create(const scene::Scene& scene,
   return made;
 }
 
+Status ImageConsumer::check(const scene::Scene& scene, const std::vector<Wish>& wishes) {
+  struct : ImageSink {
+    Status accept(const ImageSample&) override { return {}; }
+  } none;
+  const auto made = create(scene, wishes, none);
+  return made.ok() ? Status() : made.error();
+}
+
 Status ImageConsumer::wish(const std::vector<Wish>& wishes) {
   std::vector<StreamId> ids;
   std::vector<double> rates_hz;

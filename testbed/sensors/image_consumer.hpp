@@ -50,6 +50,8 @@ class ImageConsumer {
   // check_image_rate() refuses.
   static Result<ImageConsumer> create(const scene::Scene& scene, const std::vector<Wish>& wishes,
                                       ImageSink& sink);
+  // The errors of create().
+  static Status check(const scene::Scene& scene, const std::vector<Wish>& wishes);
   // Other wishes from the next frame on; errors as create(), which leave it as it was. Images on
   // their way for which nobody wishes any more are left out.
   Status wish(const std::vector<Wish>& wishes);

@@ -238,7 +238,6 @@ class Environments(unittest.TestCase):
         gymnasium.vector, gymnasium.spaces = of_vectors, types.SimpleNamespace(Box=Space, Dict=Space)
         gymnasium.register = lambda id, **named: registered.update({id: named})
         with unittest.mock.patch.dict("sys.modules", {"gymnasium": gymnasium, "gymnasium.vector": of_vectors}):
-            import neritic.gym
             env = neritic.gym.make_vec("hover", num_envs=3, autoreset="same_step")
             self.assertIsInstance(env, Base)
             self.assertIs(env.metadata["autoreset_mode"], AutoresetMode.SAME_STEP)

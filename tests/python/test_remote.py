@@ -114,6 +114,12 @@ class Remote(unittest.TestCase):
                     call()
                 self.assertNotIn("\n", str(caught.exception))
 
+    def test_a_server_that_cannot_listen_moves_no_recording(self):
+        with tempfile.TemporaryDirectory() as folder, Served() as address:
+            pathlib.Path(folder, "kept.mcap").write_text("precious")
+            served = subprocess.run([PROGRAM, "serve", SCENE, "--bind", address, "--record", f"{folder}/kept.mcap"], capture_output=True, text=True)
+            self.assertEqual((served.returncode, os.listdir(folder)), (1, ["kept.mcap"]), served.stderr)
+
     def test_an_image_of_500_x_500_floats_costs_no_new_pages(self):
         faults, bring = [], neritic.remote.Core._bring
 

@@ -604,6 +604,32 @@ class Worlds(unittest.TestCase):
             for name in ("mine_old1.mcap", "mine_old1.csv"):
                 self.assertEqual(Path(folder, name).read_text(), "precious")
 
+    def test_a_recording_begins_with_its_call_and_ends_with_stop_or_the_world(self):
+        with tempfile.TemporaryDirectory() as folder:
+            world = neritic.open(MISSION, seed=1)
+            with self.assertRaisesRegex(neritic.BadInput, "record: found folder"):
+                world.record("/proc/run")
+            recording = world.record(Path(folder, "a"))
+            world.tick(24)
+            with self.assertRaisesRegex(neritic.BadInput, "found a recording that goes on"):
+                world.record(Path(folder, "b"))
+            recording.stop()
+            recording.stop()
+            world.record(Path(folder, "b"))
+            world.tick(24)
+            world.close()
+            for name in ("a", "b"):
+                self.assertGreater(Path(folder, name + ".mcap").stat().st_size, 1000)
+                self.assertGreater(Path(folder, name + ".csv").read_text().count("\n"), 1, name)
+            self.assertEqual(sorted(os.listdir(folder)), ["a.csv", "a.mcap", "b.csv", "b.mcap"])
+
+    def test_a_world_has_its_agents_names(self):
+        with neritic.open(MISSION, seed=1) as world:
+            self.assertEqual(list(world), list(world.agents))
+            self.assertIn("rov", world)
+            self.assertNotIn("submarine", world)
+            self.assertNotIn(0, world)
+
     def test_a_recording_that_cannot_be_written_is_refused_before_the_trial(self):
         world = neritic.open(MISSION, seed=1)
         with tempfile.TemporaryDirectory() as folder:

@@ -76,6 +76,21 @@ TEST_F(DivePhysics, ARecordingWithoutLiveSamplesHasNothingToPlay) {
   EXPECT_EQ(played.status, 0);
   EXPECT_NE(played.err.find("nothing to play: no live sample was recorded\n"), std::string::npos)
       << played.err;
+  // Into its own place: what is played stays, under another name.
+  EXPECT_EQ(dive("--headless --seconds 1 --play " + file("a.mcap") + " --record " + file("a.mcap"))
+                .status,
+            0);
+  EXPECT_EQ(dive("--headless --replay " + file("a.mcap")).status, 0);
+  EXPECT_EQ(dive("--headless --replay " + file("a_old1.mcap")).status, 0);
+}
+
+TEST_F(DivePhysics, ARunThatIsRefusedMovesNoOlderRecording) {
+  const std::string record = "--headless --seconds 0.1 --record " + file("kept.mcap");
+  ASSERT_EQ(dive(record).status, 0);
+  EXPECT_EQ(dive(record + " --play " + file("none.mcap")).status, 2);
+  EXPECT_EQ(dive(record + " --markers 47812").status, 2);
+  EXPECT_EQ(dive("--headless --replay " + file("kept.mcap")).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(file("kept_old1.mcap")));
 }
 
 // Two processes: one saves half way, the other goes on; the same hash as one that never stopped.

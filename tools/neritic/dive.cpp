@@ -345,6 +345,16 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::stri
            .swim = flags.swim && screen.window && !screen.headset,
            .units = flags.units == "imperial" ? hud::Units::kImperial : hud::Units::kMetric,
            .task = flags.task}));
+  std::unique_ptr<ServedDive> served;
+  if (!flags.serve.empty()) {
+    NERITIC_TRY(const ServerOptions options,
+                server_options("--serve", flags.serve, flags.keys, kServedClients));
+    NERITIC_TRY(served, ServedDive::start(options, *physics, session->scene(), devices.get()));
+  }
+  std::vector<ImageConsumer::Wish> wishes;
+  for (const std::string& stream : flags.record_images) wishes.push_back({stream});
+  NERITIC_TRY_STATUS(ImageConsumer::check(session->scene(), wishes));
+  // After all that may refuse: an older file of their names is moved away.
   std::optional<StepFiles> files;
   std::vector<StepSink*> step_sinks;
   std::vector<SampleSource*> sources{&view->pilot()};
@@ -366,11 +376,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::stri
     step_sinks.push_back(&replay->check);
     sources.push_back(&replay->source);
   }
-  std::unique_ptr<ServedDive> served;
-  if (!flags.serve.empty()) {
-    NERITIC_TRY(const ServerOptions options,
-                server_options("--serve", flags.serve, flags.keys, kServedClients));
-    NERITIC_TRY(served, ServedDive::start(options, *physics, session->scene(), devices.get()));
+  if (served) {
     step_sinks.push_back(&served->link());
     sources.push_back(&served->link());
     if (!flags.quiet && !flags.json) {
@@ -387,8 +393,6 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::stri
     if (!file)
       return refusal("--record-images", "no --record beside it", "with --record FILE.mcap");
     images.emplace(file->out(), [file] { return file->ready(); });
-    std::vector<ImageConsumer::Wish> wishes;
-    for (const std::string& stream : flags.record_images) wishes.push_back({stream});
     NERITIC_TRY(image_consumer, ImageConsumer::create(session->scene(), wishes, *images));
     consumers.push_back(&*image_consumer);
   }

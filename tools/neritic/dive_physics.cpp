@@ -67,9 +67,6 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,
                 Devices::open(scene, world, physics->inbox(), DeviceSource::Pace::kThread));
     recording.signals = devices->signals();
   }
-  const StepFiles files(flags.files, scene.title, recording, *physics);
-  std::vector<StepSink*> sinks{&watch};
-  for (StepSink* sink : files.sinks()) sinks.push_back(sink);
   // Recordings: one of a device, one of the whole run.
   std::optional<RecordedSource> played;
   std::unique_ptr<Replay> replay;
@@ -84,9 +81,15 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,
   if (recorded) {
     NERITIC_TRY(replay, Replay::of(std::move(*recorded), flags.replay, world));
     sources = {&replay->source};
-    sinks.push_back(&replay->check);
     seconds = replay->seconds();
   }
+  if (!flags.markers.empty() && !flags.realtime)
+    return refusal("--markers", "a run in simulated time", "--realtime, or a window");
+  // After all that may refuse: an older file of their names, maybe the played one, is moved away.
+  const StepFiles files(flags.files, scene.title, recording, *physics);
+  std::vector<StepSink*> sinks{&watch};
+  for (StepSink* sink : files.sinks()) sinks.push_back(sink);
+  if (replay) sinks.push_back(&replay->check);
   std::optional<DeviceNotes> device_notes;
   if (devices) {
     for (SampleSource* source : devices->sources()) sources.push_back(source);
@@ -94,8 +97,6 @@ Status dive_physics(const DiveFlags& flags, const scene::Scene& scene,
   }
   std::unique_ptr<Markers> markers;
   if (!flags.markers.empty()) {
-    if (!flags.realtime)
-      return refusal("--markers", "a run in simulated time", "--realtime, or a window");
     NERITIC_TRY(markers, Markers::open(flags.markers, files.recording()));
     sinks.push_back(markers.get());
     if (!flags.quiet && !flags.json) fmt::print("{}\n", markers->words());

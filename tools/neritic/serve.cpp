@@ -47,11 +47,12 @@ Status run_serve(const ServeFlags& flags) {
   const std::uint64_t first_step = world->step();
   if (world->leaves_devices())
     log_warn("{}: its devices send in real time; only --realtime listens to them", flags.scene);
-  if (!flags.record.empty()) NERITIC_TRY_STATUS(world->record(flags.record));
   HandOff hand_off;
   NERITIC_TRY(const auto server,
               Server::start(facts_of(*world, flags.real_time, std::string(program_version())),
                             hand_off, options));
+  // After all that may refuse: an older file of that name is moved away. No client is answered yet.
+  if (!flags.record.empty()) NERITIC_TRY_STATUS(world->record(flags.record));
   if (!flags.quiet) {
     fmt::print("{} at {}, {}, {}\n", world->title(), to_text(server->address()),
                flags.real_time ? "in real time" : "in lock-step with the first client that ticks",

@@ -17,6 +17,9 @@ human_state(...)  what a robot may know of a diver, each value with its quality
 Error, BadInput   the exceptions, one line each
 """
 
+from importlib import import_module
+from typing import Any
+
 from . import _core
 from .agents import Agent, Diver, TrackedObject, Vehicle
 from .errors import BadInput, Error
@@ -25,12 +28,20 @@ from .observations import MODEM_EVENTS, Image, Message, Observations, Reading, S
 from .remote import RemoteWorld, connect
 from .sources import Counts, Link, ServerCounts, Source
 from .vector import VectorEnv, vector
-from .world import World, open
+from .world import Recording, World, open
 
 _core.set_errors(Error, BadInput)
 
+
+def __getattr__(name: str) -> Any:
+    """neritic.gym, which needs Gymnasium, is loaded when it is used first."""
+    if name == "gym":
+        return import_module("neritic.gym")
+    raise AttributeError(f"module 'neritic' has no attribute '{name}'")
+
+
 __all__ = [
-    "Agent", "BadInput", "Counts", "Diver", "Error", "Image", "Link", "MODEM_EVENTS", "Message", "Observations", "Reading",
+    "Agent", "BadInput", "Counts", "Diver", "Error", "Image", "Link", "MODEM_EVENTS", "Message", "Observations", "Reading", "Recording",
     "RemoteWorld", "ServerCounts", "Source", "Stream", "TrackedObject", "Truth", "Value", "VectorEnv", "Vehicle", "World", "connect", "human_state", "open",
     "vector",
 ]

@@ -6,7 +6,6 @@ import asyncio
 import os
 import tempfile
 from collections import deque
-from contextlib import contextmanager
 from typing import Any, AsyncIterator, Callable, Iterator, Mapping, Optional, Union
 
 import numpy as np
@@ -21,6 +20,30 @@ from .sources import Counts, sources_of
 
 MOST_STEPS = 100_000_000
 """Steps of one tick, at most."""
+
+
+class Recording:
+    """A recording that goes on until its `with` block ends, until stop() or until the world closes."""
+
+    def __init__(self, core: _core.World) -> None:
+        self._core, self._on = core, True
+
+    def stop(self) -> None:
+        """Ends it and writes what is left; an Error if that cannot be done. Once it has ended, does nothing."""
+        on, self._on = self._on, False
+        if on and not self._core.closed:  # close() ended it
+            self._core.stop_recording()
+
+    def __enter__(self) -> Recording:
+        return self
+
+    def __exit__(self, kind: object, error: Optional[BaseException], trace: object) -> None:
+        try:
+            self.stop()
+        except Error as failed:
+            if error is None:
+                raise
+            error.add_note(f"the recording: {failed}")  # beside the block's own exception, which is what ended it
 
 
 class World:
@@ -110,6 +133,14 @@ class World:
             return self._agents[name]
         except (KeyError, TypeError):
             raise BadInput(f"agent: found {shown(name)}; accepted: {', '.join(self._agents)}") from None
+
+    def __contains__(self, name: object) -> bool:
+        """Whether an agent has that name."""
+        return name in self._agents.keys()
+
+    def __iter__(self) -> Iterator[str]:
+        """The names of its agents."""
+        return iter(self._agents)
 
     def truth(self, agent: str) -> Truth:
         """The true motion of the agent, apart from what is measured of it."""
@@ -216,29 +247,18 @@ class World:
         for mail in self._mail.values():
             mail.clear()
 
-    @contextmanager
-    def record(self, path: Union[str, os.PathLike[str]]) -> Iterator[None]:
-        """Records what follows: `with world.record("out/run"): ...` writes out/run.mcap, which
-        `neritic dive --replay` repeats and ROS 2 tools read, and out/run.csv."""
+    def record(self, path: Union[str, os.PathLike[str]]) -> Recording:
+        """Records what follows, up to the end of a block, stop() or close(): `with world.record("out/run"): ...` writes
+        out/run.mcap, which `neritic dive --replay` repeats and ROS 2 tools read, and out/run.csv."""
         name = path_of("record", path)
         self._check_recording("record")
         self._check_record(name)
         self._core.record(name)
-        try:
-            yield
-        except BaseException as error:
-            try:
-                if not self._core.closed:
-                    self._core.stop_recording()
-            except Error as failed:  # beside the block's own exception, which is what ended it
-                error.add_note(f"the recording: {failed}")
-            raise
-        if not self._core.closed:  # close() ended it
-            self._core.stop_recording()
+        return Recording(self._core)
 
     def _check_recording(self, what: str) -> None:
         if self._core.recording:
-            raise BadInput(f"{what}: found a recording that goes on; accepted: the end of its `with` block before it")
+            raise BadInput(f"{what}: found a recording that goes on; accepted: the end of its `with` block, or its stop(), before it")
 
     def _check_record(self, name: str) -> None:
         """Refuses a file that could not be written, before anything runs."""
