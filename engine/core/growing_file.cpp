@@ -1,7 +1,13 @@
 #include "engine/core/growing_file.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <system_error>
 
 #include "engine/core/files.hpp"
@@ -14,6 +20,25 @@ fs::path part_of(const fs::path& path) {
   fs::path part = path;
   part += ".part";
   return part;
+}
+
+Status GrowingFile::claim() {
+  const auto refused = [&](const std::string& why) {
+    return status_ = failure(ErrorCode::kIo, "{}: cannot be written: {}", path_.string(), why);
+  };
+  const auto target = write_target(path_);
+  if (!target.ok()) return status_ = target.error();
+  if (target->in_place) return {};
+  const fs::path part = part_of(target->path);
+  const int fd = ::open(part.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (fd < 0) return refused(std::strerror(errno));
+  claim_.reset(::fdopen(fd, "ab"));
+  // Some file systems have no locks.
+  if (::flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    return refused("another program writes " + part.string());
+  if (::ftruncate(fd, 0) != 0) return refused(std::strerror(errno));
+  target_ = target->path;
+  return {};
 }
 
 Status GrowingFile::append(std::string_view text) {
@@ -105,12 +130,23 @@ Status GrowingFile::finish() {
   if (error)
     return status_ = failure(ErrorCode::kIo, "{}: cannot be written: {}", path_.string(),
                              error.message());
+  claim_.reset();
   return {};
+}
+
+bool being_written(const fs::path& path) {
+  const auto target = write_target(path);
+  if (!target.ok() || target->in_place) return false;
+  const int fd = ::open(part_of(target->path).c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return false;
+  const bool locked = ::flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(fd);
+  return locked;
 }
 
 void keep_old(const fs::path& path) {
   const auto target = write_target(path);
-  if (!target.ok() || target->in_place) return;
+  if (!target.ok() || target->in_place || being_written(path)) return;
   std::error_code none;
   const std::array<fs::path, 2> there{target->path, part_of(target->path)};
   if (std::ranges::none_of(there, [&](const fs::path& file) { return fs::exists(file, none); }))

@@ -26,6 +26,9 @@ class GrowingFile {
 
   // Opens nothing: the first chunk does.
   explicit GrowingFile(std::filesystem::path path) : path_(std::move(path)) {}
+  // Before the first append: makes the .part at once, and keeps other programs from writing a file
+  // of this name (being_written()). An Error if one does so already.
+  Status claim();
 
   // One piece each. After an Error all further calls return it.
   Status append(std::string_view text);
@@ -49,7 +52,8 @@ class GrowingFile {
   Error not_whole();
   std::filesystem::path path_, target_;  // target_: behind links; empty before the first chunk
   bool in_place_ = false;
-  File held_;  // of what is written to as it stands; plain files are opened for each chunk
+  File claim_;  // locked; nothing is written through it
+  File held_;   // of what is written to as it stands; plain files are opened for each chunk
   std::string chunk_;
   std::vector<std::size_t> ends_;  // of the pieces in the chunk
   Status status_;
@@ -59,8 +63,10 @@ class GrowingFile {
 
 // The name that a file grows under.
 std::filesystem::path part_of(const std::filesystem::path& path);
-// Gives files that have this name, whole or in part, another one: NAME_old1. Where that fails,
-// writing says why.
+// Whether a program writes a file of this name, which it has claimed.
+bool being_written(const std::filesystem::path& path);
+// Gives files that have this name, whole or in part, another one: NAME_old1. Where that fails, or
+// the part is being written, writing says why.
 void keep_old(const std::filesystem::path& path);
 
 }  // namespace neritic

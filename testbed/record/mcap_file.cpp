@@ -16,6 +16,8 @@ constexpr auto kLook = std::chrono::milliseconds(100);
 
 McapFile::McapFile(std::filesystem::path path) : file_(std::move(path)) {
   keep_old(file_.path());
+  status_ = file_.claim();
+  failed_ = !status_.ok();
   writer_ = std::thread([this] { write_all(); });
 }
 

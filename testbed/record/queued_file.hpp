@@ -29,7 +29,8 @@ class QueuedFile {
   // written at once: a disk that fills leaves it.
   QueuedFile(std::filesystem::path path, std::string_view head,
              std::function<std::string(const Batch&)> text)
-      : text_(std::move(text)), file_(std::move(path)), status_(file_.append_lines(head)) {
+      : text_(std::move(text)), file_(std::move(path)), status_(file_.claim()) {
+    if (status_.ok()) status_ = file_.append_lines(head);
     if (status_.ok()) status_ = file_.flush();
     writer_ = std::thread([this] { write_all(); });
   }

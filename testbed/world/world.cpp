@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/growing_file.hpp"
 #include "engine/core/refusal.hpp"
 #include "engine/core/ros_frames.hpp"
 #include "engine/core/text.hpp"
@@ -406,6 +407,9 @@ Status World::record(const std::filesystem::path& path) {
   if (parts_->owned_devices) options.signals = parts_->owned_devices->signals();
   std::filesystem::path base = path;
   if (base.extension() == ".mcap") base.replace_extension();
+  for (const char* ending : {".mcap", ".csv"})
+    if (auto file = base; being_written(file += ending))
+      return refusal("record", file.string() + ", which another program writes", "another name");
   recording.begin(parts_->physics->simulation(), base, std::move(options));
   return {};
 }

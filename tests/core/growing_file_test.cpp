@@ -58,6 +58,33 @@ TEST(GrowingFile, TakesItsNameWhenItIsWholeAndReplacesAnEarlierPart) {
   EXPECT_EQ(fs::file_size(folder / "empty"), 0u);
 }
 
+TEST(GrowingFile, OneThatIsClaimedIsWrittenByNobodyElse) {
+  const test::ScratchFolder folder;
+  const fs::path path = folder / "a.mcap";
+  ASSERT_TRUE(write_text(part_of(path), "of a killed run").ok());
+  EXPECT_FALSE(being_written(path));
+  {
+    GrowingFile file(path), other(path);
+    ASSERT_TRUE(file.claim().ok());
+    EXPECT_TRUE(being_written(path));
+    ASSERT_TRUE(file.append(std::string_view("one")).ok());
+    ASSERT_TRUE(file.flush().ok());
+    const Status refused = other.claim();
+    ASSERT_FALSE(refused.ok());
+    EXPECT_NE(refused.error().message.find("another program writes"), std::string::npos)
+        << refused.error().message;
+    EXPECT_FALSE(other.append(std::string_view("two")).ok());
+    EXPECT_FALSE(other.finish().ok());
+    keep_old(path);
+    ASSERT_TRUE(file.finish().ok());
+  }
+  EXPECT_EQ(read_text(path).value(), "one");
+  EXPECT_EQ(std::distance(fs::directory_iterator(path.parent_path()), {}), 1);
+  EXPECT_FALSE(being_written(path));
+  GrowingFile again(path);
+  EXPECT_TRUE(again.claim().ok());
+}
+
 // The limit of a file's size stands for a disk that fills.
 TEST(GrowingFile, AFullDiskLeavesWholeRowsAndSaysWhere) {
   const test::ScratchFolder folder;

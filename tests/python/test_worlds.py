@@ -613,6 +613,8 @@ class Worlds(unittest.TestCase):
             world.tick(24)
             with self.assertRaisesRegex(neritic.BadInput, "found a recording that goes on"):
                 world.record(Path(folder, "b"))
+            with neritic.open(MISSION, seed=2) as other, self.assertRaisesRegex(neritic.BadInput, "a.mcap, which another program writes"):
+                other.record(Path(folder, "a"))
             recording.stop()
             recording.stop()
             world.record(Path(folder, "b"))

@@ -47,9 +47,10 @@ TEST_F(DivePhysics, AReplayCanBeInterrupted) {
   EXPECT_NE(err.find(" s of 60\n"), std::string::npos) << err;
 }
 
-// Ctrl-C, and what `kill` sends: what was flown until then is written, and replays.
+// Ctrl-C, what `kill` sends, and a terminal that is closed: what was flown until then is written,
+// and replays.
 TEST_F(DivePhysics, InterruptedItWritesWhatItHas) {
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     std::filesystem::remove(scratch_ / "a.mcap");  // else that is kept, which a line says
     const pid_t program = ::fork();
     if (program == 0) {

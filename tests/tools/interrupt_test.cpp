@@ -47,6 +47,19 @@ TEST(Interrupt, TheFirstSignalSetsAFlagWhileOneLives) {
   }
 }
 
+TEST(Interrupt, AHangUpThatIsIgnoredStaysSo) {
+  std::signal(SIGHUP, SIG_IGN);
+  {
+    const tools::Interrupt interrupt;
+    std::raise(SIGHUP);
+    EXPECT_FALSE(interrupt.requested());
+  }
+  EXPECT_EQ(std::signal(SIGHUP, SIG_DFL), SIG_IGN);
+  const tools::Interrupt interrupt;
+  std::raise(SIGHUP);
+  EXPECT_TRUE(interrupt.requested());
+}
+
 TEST(InterruptDeathTest, TheSecondSignalEndsTheProgram) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(

@@ -7,6 +7,7 @@
 #include <string>
 #include <system_error>
 
+#include "engine/core/growing_file.hpp"
 #include "engine/core/refusal.hpp"
 
 namespace neritic::tools {
@@ -75,6 +76,7 @@ Status check_output_file(std::string_view flag, const fs::path& file) {
     return refused(flag, file, "no folder " + behind.parent_path().string());
   if (const std::string reason = why_not_in(behind.parent_path()); !reason.empty())
     return refused(flag, file, reason);
+  if (being_written(file)) return refused(flag, file, "another program writes it");
   return {};
 }
 

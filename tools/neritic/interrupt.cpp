@@ -16,10 +16,16 @@ std::atomic<bool> g_listening{false};
 std::atomic<std::int64_t> g_interrupted_ns{0};  // when; 0: not yet
 static_assert(std::atomic<std::int64_t>::is_always_lock_free, "a handler may not lock");
 
-constexpr int kSignals[] = {SIGINT, SIGTERM};
+// A terminal that is closed sends SIGHUP; nohup has it ignored.
+constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
 
 // `timeout` sends its signal twice in a row, to the program and to its group: that is one wish.
 constexpr std::int64_t kSameWish_ns = 500'000'000;
+
+bool ignored_hangup(int signal) {
+  struct sigaction now {};
+  return signal == SIGHUP && sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
+}
 
 // Everything in here is allowed in a handler (signal-safety(7)).
 extern "C" void note_interrupt(int signal) {
@@ -43,13 +49,15 @@ Interrupt::Interrupt() {
   struct sigaction action {};
   action.sa_handler = note_interrupt;
   action.sa_flags = SA_RESTART;  // calls that wait go on
-  for (const int signal : kSignals) sigaction(signal, &action, nullptr);
+  for (const int signal : kSignals)
+    if (!ignored_hangup(signal)) sigaction(signal, &action, nullptr);
 }
 
 Interrupt::~Interrupt() {
   struct sigaction action {};
   action.sa_handler = SIG_DFL;
-  for (const int signal : kSignals) sigaction(signal, &action, nullptr);
+  for (const int signal : kSignals)
+    if (!ignored_hangup(signal)) sigaction(signal, &action, nullptr);
   g_listening = false;
 }
 

@@ -5,8 +5,8 @@
 
 namespace neritic::tools {
 
-// While one lives, the first SIGINT or SIGTERM only sets a flag. One at a time; made and destroyed
-// on one thread, asked from any.
+// While one lives, the first SIGINT, SIGTERM or SIGHUP (unless that is ignored) only sets a flag.
+// One at a time; made and destroyed on one thread, asked from any.
 class Interrupt {
  public:
   Interrupt();

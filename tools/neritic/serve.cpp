@@ -54,7 +54,8 @@ Status run_serve(const ServeFlags& flags) {
   // After all that may refuse: an older file of that name is moved away. No client is answered yet.
   if (!flags.record.empty()) NERITIC_TRY_STATUS(world->record(flags.record));
   if (!flags.quiet) {
-    fmt::print("{} at {}, {}, {}\n", world->title(), to_text(server->address()),
+    fmt::print("{} at {}, {}, {}\n", world->title().empty() ? flags.scene : world->title(),
+               to_text(server->address()),
                flags.real_time ? "in real time" : "in lock-step with the first client that ticks",
                flags.keys.empty() ? "for this machine alone" : "for clients with a key");
     std::fflush(stdout);  // programs wait for this line
