@@ -459,15 +459,16 @@ def school_fish():
             bumps = g.texture(f"{name}_normal", bumps, 72)
         b = g.texture(f"{name}_color", picture, 82)
         m_b = g.material(f"{name}_body", base=b, rough=rough, metal=0.25 if skin else 0.0, normal=bumps)
-        if m_f is None:
-            m_f = g.material(f"{name}_fin", base=b, rough=0.6, double=True)
-        prims = [(shade(parts[0], 80), m_b), (shade(join(parts[1:]), 80), m_f)]
+        if m_f is None:  # in one piece, with fins of two sides: what is drawn by the thousand costs by the piece
+            prims = [(shade(join([*parts, *(part.flipped() for part in parts[1:])]), 80), m_b)]
+        else:
+            prims = [(shade(parts[0], 80), m_b), (shade(join(parts[1:]), 80), m_f)]
         if length:
             spines.append(fish_swim.swimmer(g, name, prims, length, at))
         else:
             g.node(name, g.mesh(name, prims), at=at)
 
-    # 58 triangles, for thousands
+    # 56 triangles, for thousands
     sardine = [fish_body([-0.08, -0.055, -0.015, 0.03, 0.065], [0.002, 0.013, 0.018, 0.013, 0.005], [0.001, 0.007, 0.009, 0.006, 0.002], 4),
                fin([(0, 0.060), (0.020, 0.088), (0.003, 0.076), (-0.003, 0.076), (-0.020, 0.088)], 0.16), fin([(0.016, -0.01), (0.028, 0.004), (0.014, 0.016)], 0.16)]
     silver = lambda col, u, v: N.mix(col, (0.70, 0.78, 0.80), 0.5 * N.smooth(0.08, 0.02, np.abs(v - 0.52)))
