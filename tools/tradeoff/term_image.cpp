@@ -31,6 +31,12 @@ double return_s(const Vec3& target_m, const Vec3& velocity_m_s, double out_s, do
   return t;
 }
 
+// Within half a turn; most angles are, and dividing costs more than all else that is done with
+// them.
+double wrapped(double angle_rad) {
+  return std::abs(angle_rad) < kPi ? angle_rad : std::remainder(angle_rad, 2.0 * kPi);
+}
+
 // The entry of a table at a share of its longest range and a sine of the elevation.
 double entry_of(const sonar::RangeCorrection& table, const std::vector<float>& entries,
                 double share, double sine) {
@@ -84,7 +90,7 @@ Result<TermImage> TermImage::create(const scene::Sonar& sonar, const sonar::Head
   }
   made.make_kernel();
   const std::size_t bins = made.grid_.bins.range + 2 * made.reach_;
-  made.column_.assign(made.kernel_.empty() ? bins : bins * kSubBins + 1, 0.0);
+  made.column_.assign(made.kernel_[0].empty() ? bins : bins * kSubBins + 1, 0.0);
   made.spread_.resize(made.grid_.bins.range);
   for (auto& half : made.halves_)
     half.assign(std::size_t{made.grid_.bins.range} * made.grid_.bins.azimuth, 0.0);
@@ -107,8 +113,12 @@ void TermImage::make_kernel() {
            sonar::pulse_energy_below(shape, -offset_m, resolution);
   };
   const double scale = sonar_->terms.level ? sonar::pulse_length_m(shape, resolution) / step : 1.0;
-  for (int k = -reach_ * kSubBins; k <= (reach_ + 1) * kSubBins; ++k)
-    kernel_.push_back(share(k * step / kSubBins) * scale);
+  const int least = -reach_ * kSubBins, most = (reach_ + 1) * kSubBins;
+  for (int phase = 0; phase < kSubBins; ++phase) {
+    for (int k = least + phase; k <= most; k += kSubBins)
+      kernel_[phase].push_back(share(k * step / kSubBins) * scale);
+    std::ranges::reverse(kernel_[phase]);
+  }
 }
 
 double TermImage::power(const TruthRay& ray, const TruthEcho& echo) const {
@@ -187,7 +197,7 @@ void TermImage::add(const TruthRay& ray, const TruthEcho& echo) {
   if (!(at > -reach_) || !(at < double(grid_.bins.range) + reach_)) return;
   const double p = power(ray, echo);
   any_ = true;
-  if (kernel_.empty()) {
+  if (kernel_[0].empty()) {
     column_[static_cast<std::size_t>(std::min(at, grid_.bins.range - 0.5))] += p;
     return;
   }
@@ -199,7 +209,7 @@ void TermImage::add(const TruthRay& ray, const TruthEcho& echo) {
 }
 
 void TermImage::spread_column() {
-  if (kernel_.empty()) {
+  if (kernel_[0].empty()) {
     spread_ = column_;
     return;
   }
@@ -208,12 +218,11 @@ void TermImage::spread_column() {
     const double p = column_[s];
     if (p == 0.0) continue;
     // Row j's near edge is sub-bin (j + reach) * kSubBins.
-    const int first = static_cast<int>(s / kSubBins) - 2 * reach_;
-    for (int j = std::max(0, first); j < static_cast<int>(spread_.size()); ++j) {
-      const int k = static_cast<int>(s) - j * kSubBins;  // reach_ sub-bins on from the kernel's
-      if (k < 0) break;
-      if (k < static_cast<int>(kernel_.size())) spread_[j] += p * kernel_[k];
-    }
+    const std::vector<double>& kernel = kernel_[s % kSubBins];
+    const int size = static_cast<int>(kernel.size()), rows = static_cast<int>(spread_.size());
+    const int first = static_cast<int>(s / kSubBins) - (size - 1);
+    const int begin = std::max(0, first), end = std::min(rows, first + size);
+    for (int j = begin; j < end; ++j) spread_[j] += p * kernel[j - first];
   }
 }
 
@@ -234,7 +243,7 @@ void TermImage::make_weights() {
 }
 
 double TermImage::beam_weight(double off_rad) const {
-  const double off = std::abs(std::remainder(off_rad, 2.0 * kPi));
+  const double off = std::abs(wrapped(off_rad));
   if (!patterns_.azimuth) {
     const double step = grid_.azimuth_step_rad();
     if (off > step / 2.0) return 0.0;
@@ -272,8 +281,7 @@ void TermImage::end_column(int half) {
     const double off = column_rad_ + slide - grid_.azimuth_rad(b);
     const double still = folded_ ? 1.0 : beam_weight(off);
     const double most_turn = std::abs(turn) * grid_.limits.range_max_m;
-    if (still == 0.0 && std::abs(std::remainder(off, 2.0 * kPi)) > weight_reach_rad() + most_turn)
-      continue;
+    if (still == 0.0 && std::abs(wrapped(off)) > weight_reach_rad() + most_turn) continue;
     for (std::uint32_t row = 0; row < grid_.bins.range; ++row) {
       if (spread_[row] == 0.0) continue;
       const double w = turn == 0.0 ? still : beam_weight(off + turn * grid_.range_m(row));

@@ -6,6 +6,7 @@
 // absorption, sound speed), which have tests of their own against published values.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -95,9 +96,10 @@ class TermImage {
   double sound_speed_m_s_ = 1500.0, absorption_db_per_m_ = 0.0;
   std::vector<double> weights_;  // of a pattern over the angle off its axis
   double weight_step_rad_ = 0.0;
-  std::vector<double> gain_;    // of the receiver, by row
-  std::vector<double> kernel_;  // share of a return that a bin gets, by sub-bins between them
-  int reach_ = 0;               // bins that the kernel reaches
+  std::vector<double> gain_;  // of the receiver, by row
+  // Share of a return that a row gets, for each eighth of a bin where it may lie, by rows.
+  std::array<std::vector<double>, kSubBins> kernel_;
+  int reach_ = 0;  // bins that the kernel reaches
   double column_rad_ = 0.0, width_rad_ = 0.0;
   bool any_ = false;
   std::vector<double> column_;  // sub-bins (bins where nothing spreads), from -reach on
