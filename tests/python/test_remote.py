@@ -1,5 +1,7 @@
 """A world on a server is the world in this process: the same observations, hashes and truths."""
 
+import contextlib
+import io
 import os
 import pathlib
 import resource
@@ -131,13 +133,13 @@ class Remote(unittest.TestCase):
 
         try:
             with unittest.mock.patch.object(neritic.remote.Core, "_bring", counted):
-                speed.remote_image_ms(rounds=12)
+                speed.remote_image_ms(rounds=7)
         except neritic.Error as error:
             if "Vulkan" not in str(error):
                 raise
             self.skipTest(str(error))
         # Its 245 pages are new with the first ones, whose memory the others use again.
-        self.assertGreaterEqual(len(faults), 10)
+        self.assertGreaterEqual(len(faults), 6)
         self.assertLess(sum(faults[3:]), 100, faults)
 
     def test_an_images_memory_is_used_again_when_nobody_has_it(self):
@@ -156,7 +158,7 @@ class Remote(unittest.TestCase):
         self.assertEqual(len({id(one) for one in kept}), 100)
 
     def test_a_long_tick_loses_no_reading(self):
-        scene = str(ROOT / "assets/scenes/mission_measured.toml")
+        scene = str(ROOT / "tests/scenes/measured_over_sand.toml")
         with Served(scene=scene) as address, neritic.open(scene, seed=3) as here, neritic.connect(address) as there:
             heard = ([], [])
             for world, to in zip((here, there), heard):
@@ -249,7 +251,7 @@ class Remote(unittest.TestCase):
             self.assertIn(words, done.stderr)
 
     def test_a_client_that_does_not_tick_gets_images_mail_and_callbacks(self):
-        scene = str(ROOT / "assets/scenes/talk.toml")
+        scene = str(ROOT / "tests/scenes/talk_over_sand.toml")
         with Served(scene=scene) as address, neritic.connect(address) as ticks, neritic.connect(address) as looks:
             heard = []
             looks.on("diver/motion", heard.append)
@@ -282,13 +284,20 @@ class Remote(unittest.TestCase):
             self.assertGreaterEqual(there.step, before + 30)
 
     def test_joining_fails_in_one_line(self):
-        def join(*words):
+        def join(*words):  # in this process
+            out = io.StringIO()
+            with unittest.mock.patch.object(sys, "argv", ["join", *words]), contextlib.redirect_stderr(out):
+                status = neritic.join.main()
+            self.assertEqual(out.getvalue().count("\n"), 1 if status else 0, out.getvalue())
+            return status, out.getvalue()
+
+        def run(*words):
             done = subprocess.run(["/usr/bin/python3", "-m", "neritic.join", *words], capture_output=True, text=True, timeout=60)
             self.assertEqual(done.stderr.count("\n"), 1 if done.returncode else 0, done.stderr)
             return done.returncode, done.stderr
 
         with Served() as address:
-            found = join(address, SCENE, "--seconds", "0.1")
+            found = run(address, SCENE, "--seconds", "0.1")
             self.assertEqual(found[0], 2, found)
             self.assertIn("found a server in lock-step", found[1])
         with Served("--realtime") as address:
@@ -297,13 +306,14 @@ class Remote(unittest.TestCase):
                                         ((address, SCENE, "--as", "rov"), 2, "no object with a pose input"),
                                         ((address, SCENE, "--seconds", "nan"), 2, "--seconds"), ((address,), 2, "scene"),
                                         (("tcp://127.0.0.1:1", SCENE), 1, "no answer"),
-                                        (("tcp://nosuch.invalid:5", SCENE), 1, "found no computer of the name nosuch.invalid"), ((address, SCENE, "--seconds", "0.1"), 0, "")):
+                                        (("tcp://nosuch.invalid:5", SCENE), 1, "found no computer of the name nosuch.invalid")):
                 found = join(*words)
                 self.assertEqual(found[0], status, found)
                 self.assertIn(line, found[1])
+            self.assertEqual(run(address, SCENE, "--seconds", "0.1"), (0, ""))
 
     def test_messages_by_sound_are_those_of_the_process(self):
-        talk = str(ROOT / "assets/scenes/talk.toml")
+        talk = str(ROOT / "tests/scenes/talk_over_sand.toml")
         with Served(scene=talk) as address, neritic.open(talk, seed=3) as here, neritic.connect(address) as there:
             heard = []
             for world in (here, there):

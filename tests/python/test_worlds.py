@@ -24,10 +24,10 @@ import neritic
 from neritic import speed
 
 ROOT = Path(__file__).resolve().parents[2]
-MISSION = str(ROOT / "assets/scenes/mission.toml")
-DIVE = str(ROOT / "assets/scenes/dive.toml")
-TALK = str(ROOT / "assets/scenes/talk.toml")
-MEASURED = str(ROOT / "assets/scenes/mission_measured.toml")
+SCENES = ROOT / "tests/scenes"
+DIVE = str(SCENES / "over_sand.toml")
+TALK = str(SCENES / "talk_over_sand.toml")
+MEASURED = str(SCENES / "measured_over_sand.toml")
 
 
 class Divers(unittest.TestCase):
@@ -85,7 +85,7 @@ class Worlds(unittest.TestCase):
         self.assertNotEqual(neritic.open(MEASURED, seed=8).hash, neritic.open(MEASURED, seed=7).hash)
 
     def test_a_saved_state_goes_on_with_the_same_hashes(self):
-        world = neritic.open(MISSION, seed=1)
+        world = neritic.open(DIVE, seed=1)
         world.tick(100)
         state = world.save()
         world.tick(100)
@@ -128,7 +128,7 @@ class Worlds(unittest.TestCase):
         self.assertGreater(world.observe()["rov/imu"].sequence, sequence)
 
     def test_a_command_that_was_saved_is_released_or_followed_by_another(self):
-        with neritic.open(MISSION, seed=1) as world:
+        with neritic.open(DIVE, seed=1) as world:
             world["rov"].thrusters([0, 0, 0, 0, 20, 20, 20, 20])
             world.tick(48)
             state = world.save()
@@ -137,7 +137,7 @@ class Worlds(unittest.TestCase):
         for end in (lambda rov: rov.release(), lambda rov: rov.goto(8, 15, -10), lambda rov: rov.velocity(0.2)):
             runs = []
             for restored in (False, True):
-                with neritic.open(MISSION, seed=1) as world:
+                with neritic.open(DIVE, seed=1) as world:
                     if restored:
                         world.restore(state)
                     else:
@@ -221,7 +221,7 @@ class Worlds(unittest.TestCase):
                     self.assertAlmostEqual(reading.stamp, reading.sequence / 200, delta=2e-9)
 
     def test_ctrl_c_ends_a_tick_and_leaves_the_world(self):
-        with neritic.open(MISSION, seed=1) as world, neritic.open(MISSION, seed=1) as other:
+        with neritic.open(DIVE, seed=1) as world, neritic.open(DIVE, seed=1) as other:
             threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
             begun = time.monotonic()
             with self.assertRaises(KeyboardInterrupt):
@@ -240,7 +240,7 @@ class Worlds(unittest.TestCase):
                 pass
 
         async def work():
-            with neritic.open(MISSION, seed=1) as world:
+            with neritic.open(DIVE, seed=1) as world:
                 await endless(world)
 
         async def main():
@@ -253,14 +253,14 @@ class Worlds(unittest.TestCase):
             with self.assertRaises(asyncio.TimeoutError):
                 await asyncio.wait_for(work(), 0.1)
 
-        with neritic.open(MISSION, seed=1) as kept:
+        with neritic.open(DIVE, seed=1) as kept:
             asyncio.run(main())
             step = kept.step
             kept.tick(1)
             self.assertEqual(kept.step, step + 1)
 
     def test_close_ends_a_tick_of_another_thread(self):
-        world, ends = neritic.open(MISSION, seed=1), []
+        world, ends = neritic.open(DIVE, seed=1), []
 
         def long():
             try:
@@ -277,7 +277,7 @@ class Worlds(unittest.TestCase):
         self.assertRegex(ends[0], "stopped at step|closed")
 
     def test_inputs_have_no_link(self):
-        with neritic.open(MISSION, seed=1) as world, self.assertRaisesRegex(neritic.BadInput, "a stream of inputs.*; accepted: "):
+        with neritic.open(DIVE, seed=1) as world, self.assertRaisesRegex(neritic.BadInput, "a stream of inputs.*; accepted: "):
             world.link("rov/setpoint", delay=0.5)
 
     def test_an_observation_never_goes_back_in_time(self):
@@ -307,7 +307,7 @@ class Worlds(unittest.TestCase):
             self.assertNotEqual(truth, world.truth("rov"))
 
     def test_images_are_copied_and_pickled(self):
-        with neritic.open(MISSION, seed=1) as world:
+        with neritic.open(DIVE, seed=1) as world:
             try:
                 world.images("rov_sonar/echoes", rate=4)
             except neritic.Error as error:
@@ -365,7 +365,7 @@ class Worlds(unittest.TestCase):
 
     def test_close_ends_a_recording_inside_its_block(self):
         with tempfile.TemporaryDirectory() as folder:
-            world = neritic.open(MISSION, seed=1)
+            world = neritic.open(DIVE, seed=1)
             with world.record(Path(folder) / "run"):
                 world.tick(24)
                 world.close()
@@ -439,13 +439,13 @@ class Worlds(unittest.TestCase):
 
     def test_an_asynchronous_iterator_ticks(self):
         async def run():
-            world = neritic.open(MISSION, seed=1)
+            world = neritic.open(DIVE, seed=1)
             return [obs.step async for obs in world.ticks(10, count=3)]
 
         self.assertEqual(asyncio.run(run()), [10, 20, 30])
 
     def test_other_threads_run_while_a_world_steps(self):
-        world = neritic.open(MISSION, seed=1)
+        world = neritic.open(DIVE, seed=1)
         counted, done = [0], threading.Event()
 
         def count():
@@ -461,7 +461,7 @@ class Worlds(unittest.TestCase):
         self.assertGreater(counted[0], 10)
 
     def test_an_image_is_the_same_memory_and_outlives_its_world(self):
-        world = neritic.open(MISSION, seed=1)
+        world = neritic.open(DIVE, seed=1)
         world.images("rov_sonar/echoes")
         image = world.tick(240)["rov_sonar/echoes"]
         pixels = image.pixels
@@ -507,7 +507,7 @@ class Worlds(unittest.TestCase):
         self.assertEqual((status, err), (1, "neritic.speed: /tmp/x: Read-only file system\n"))
 
     def test_a_recording_is_made(self):
-        world = neritic.open(MISSION, seed=1)
+        world = neritic.open(DIVE, seed=1)
         with tempfile.TemporaryDirectory() as folder:
             with world.record(Path(folder) / "run"):
                 world["rov"].goto(5, 5, -5)
@@ -515,7 +515,7 @@ class Worlds(unittest.TestCase):
             self.assertEqual((Path(folder) / "run.mcap").read_bytes()[:8], b"\x89MCAP0\r\n")
 
     def test_refusals_are_one_line_that_says_what_is_accepted(self):
-        world = neritic.open(MISSION, seed=1)
+        world = neritic.open(DIVE, seed=1)
         rov = world["rov"]
         for call in (lambda: neritic.open("nowhere.toml"), lambda: world["ROV"],
                      lambda: world.truth("rob"), lambda: rov.thrusters([1.0]),
@@ -528,8 +528,8 @@ class Worlds(unittest.TestCase):
                      lambda: rov.velocity([1, 0, 0]), lambda: rov.goto(0, 0, 0, hold="x"), lambda: rov.receive(),
                      lambda: rov.fail([99]), lambda: rov.fail([-1]), lambda: rov.fail("x"), lambda: rov.goto(10**400, 0, 0), lambda: world.images("rov_camera/color", rate="x"),
                      lambda: world.tick(10**5000), lambda: neritic.vector("hover", 2).reset(seed=1.5), lambda: neritic.vector("hover", 2).reset(seed=[]),
-                     lambda: neritic.open(MISSION, seed=-1), lambda: neritic.open(MISSION, seed=2**64),
-                     lambda: neritic.open(MISSION, threads=10**6), lambda: neritic.vector("hover", "x"),
+                     lambda: neritic.open(DIVE, seed=-1), lambda: neritic.open(DIVE, seed=2**64),
+                     lambda: neritic.open(DIVE, threads=10**6), lambda: neritic.vector("hover", "x"),
                      lambda: neritic.vector("hover", 2).reset(seed=-1), lambda: neritic.vector("hover", 2).reset(seed=[1, 2, 3]),
                      lambda: neritic.vector("hover", 0), lambda: neritic.vector("hover", 2).step(np.zeros(3))):
             with self.assertRaises(neritic.BadInput) as caught:
@@ -543,7 +543,7 @@ class Worlds(unittest.TestCase):
             world.tick()
 
     def test_what_the_core_would_take_or_tell_badly_is_refused_in_one_line(self):
-        world = neritic.open(str(ROOT / "assets/scenes/dive.toml"), seed=1)
+        world = neritic.open(DIVE, seed=1)
         rov, diver = world["rov"], world["diver"]
         stands = np.tile([0.0, 0.0, 0.0, 1.0], 15)
         world.tick(4)
@@ -553,7 +553,7 @@ class Worlds(unittest.TestCase):
             "accepted: a word in quotes": (lambda: world.truth(3), lambda: world.images(3), lambda: rov.command(3, [1]),
                                            lambda: world.inject("diver/buttons", [0, 0, 0], source=3), lambda: world.on(3, print),
                                            lambda: world.link(3), lambda: world.off(3), lambda: neritic.vector(3),
-                                           lambda: neritic.open(MISSION, device=3), lambda: neritic.connect("tcp://127.0.0.1:1", name=3)),
+                                           lambda: neritic.open(DIVE, device=3), lambda: neritic.connect("tcp://127.0.0.1:1", name=3)),
             "accepted: a function": (lambda: world.on("diver/motion", 3),),
             "accepted: bytes that save": (lambda: world.restore(3), lambda: world.restore("x")),
             "accepted: a text or bytes": (lambda: rov.send(None), lambda: rov.send(7)),
@@ -564,7 +564,7 @@ class Worlds(unittest.TestCase):
                                        lambda: world.inject("diver/joints", np.zeros(61), "suit"),
                                        lambda: diver.joints(stands * np.nan)),
             "accepted: True or False": (lambda: diver.jacket(inflate=-1), lambda: diver.jacket(dump="x"),
-                                        lambda: neritic.open(MISSION, real_time="x")),
+                                        lambda: neritic.open(DIVE, real_time="x")),
             "accepted: a whole number from 0 to 3": (lambda: diver.gas(9), lambda: diver.gas(-1)),
             "stamp: found 99 s; accepted: up to now": (lambda: world.inject("diver/buttons", [0, 0, 0], "suit", stamp=99.0),),
             "ticks: count: found": (lambda: world.ticks(count=-3), lambda: world.ticks(count="x")),
@@ -582,7 +582,7 @@ class Worlds(unittest.TestCase):
         self.assertEqual([obs.step for obs in asyncio.run(self.all_of(world.ticks(np.int64(3), count=np.int64(2))))], [7, 10])
 
     def test_a_source_with_a_name_that_states_and_recordings_cannot_have_is_refused(self):
-        world = neritic.open(str(ROOT / "assets/scenes/dive.toml"), seed=1)
+        world = neritic.open(DIVE, seed=1)
         for name in ("süit", "", "tab\tx", "two words", "x" * 65, "x" * 300, "simulation", "recording"):
             with self.subTest(name=name), self.assertRaisesRegex(neritic.BadInput, "source: found .*; accepted: 1 to 64 printable"):
                 world.inject("diver/buttons", [1, 0, 0], source=name)
@@ -633,7 +633,7 @@ class Worlds(unittest.TestCase):
             self.assertNotIn(0, world)
 
     def test_a_recording_that_cannot_be_written_is_refused_before_the_trial(self):
-        world = neritic.open(MISSION, seed=1)
+        world = neritic.open(DIVE, seed=1)
         with tempfile.TemporaryDirectory() as folder:
             Path(folder, "file").write_text("")
             Path(folder, "run.mcap").mkdir()
@@ -652,7 +652,7 @@ class Worlds(unittest.TestCase):
             self.fail("the trial ran")
 
     def test_the_blocks_own_exception_is_not_replaced_by_the_recordings(self):
-        world = neritic.open(MISSION, seed=1)
+        world = neritic.open(DIVE, seed=1)
         folder = tempfile.mkdtemp()
         with self.assertRaises(ZeroDivisionError) as caught, world.record(folder + "/run"):
             world.tick(4)
