@@ -38,6 +38,10 @@ struct Way {
   StepMethod method;
 };
 
+double cpu_us_since(std::clock_t begin) {
+  return 1e6 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+}
+
 // Processor time of the whole flight: other programs' time does not count, but what they do to
 // caches and clocks does, hence the least of several.
 double least_cpu_us(const Flight& flight, const Way& way, int repeats) {
@@ -47,7 +51,7 @@ double least_cpu_us(const Flight& flight, const Way& way, int repeats) {
     flight.fly(way.count, way.method, [&](std::size_t, const rov::State& s) {
       farthest = std::max(farthest, s.position_ned_m.x);
     });
-    const double us = 1e6 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    const double us = cpu_us_since(begin);
     if (farthest > -1.0) least = std::min(least, us);  // the flights are needed for this
   }
   return least;
@@ -61,13 +65,14 @@ PhysicsPoint measure(Flight& flight, const Way& way, bool quick) {
   point.integrator = way.method.integrator;
   point.within_m = way.method.contact_error_m;
   point.step_s = step_s;
+  const std::clock_t begin = std::clock();
   const FlownError error = flown_error(flight, step_s, way.method);
+  const double once_us = cpu_us_since(begin);
   point.error_m = error.m;
   point.error_rad = error.rad;
   // Flights with contacts take tens of times as long: fewer repeats are as precise.
-  const int repeats = quick ? 1 : flight.solid ? 3 : 15;
-  point.us_a_second =
-      least_cpu_us(flight, way, repeats) / (static_cast<double>(flight.inputs.size()) * kHold_s);
+  const double us = quick ? once_us : least_cpu_us(flight, way, flight.solid ? 3 : 15);
+  point.us_a_second = us / (static_cast<double>(flight.inputs.size()) * kHold_s);
   return point;
 }
 
