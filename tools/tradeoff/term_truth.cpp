@@ -59,6 +59,11 @@ std::vector<Column> columns_of(const sonar::BeamGrid& grid, const scene::Sonar& 
   return out;
 }
 
+// What is beyond the whole number, exactly, and in less time than std::fmod takes.
+double fraction(double x) {
+  return x - std::floor(x);
+}
+
 class Tracer {
  public:
   Tracer(const RayWorld& world, const TruthView& view, const sonar::Head& head,
@@ -87,7 +92,7 @@ class Tracer {
     // Each column's rays lie at other elevations, by the golden ratio, so that neighbours fill
     // each other's gaps; and each ray at another place of the column's width, by 1 / 1.3247..., so
     // that an upright edge is met by as many rays as it should be.
-    const double offset = std::fmod((index + 1) * 0.6180339887498949, 1.0);
+    const double offset = fraction((index + 1) * 0.6180339887498949);
     for (std::uint32_t i = 0; i < rays; ++i)
       stratum(column, l.elevation_min_rad + i * width, width, offset);
     for (TermImage& image : images_) image.end_column(column.half);
@@ -112,7 +117,7 @@ class Tracer {
     TruthRay ray;
     ray.elevation_rad = elevation_rad;
     ray.elevation_width_rad = width_rad;
-    const double place = std::fmod(offset + static_cast<double>(cast_) * 0.7548776662466927, 1.0);
+    const double place = fraction(offset + static_cast<double>(cast_) * 0.7548776662466927);
     const double azimuth_rad = column.azimuth_rad + (place - 0.5) * column.width_rad;
     const Vec3 d = sonar::direction(azimuth_rad, elevation_rad);
     ray.off_axis_rad = std::acos(std::clamp(-d.z, -1.0, 1.0));
