@@ -1,15 +1,17 @@
-# Read by ctest before it tests: one test a suite of each program of SUITE_PROGRAMS, "PREFIX|PROGRAM" each.
+# Read by ctest before it tests: one test a suite of each program of SUITE_PROGRAMS, "PREFIX|PROGRAM|FILTER" each,
+# of those suites that GoogleTest's filter lets through.
 # The tests of a suite share its process, and with it the device's pipelines, whose making costs most tests of
 # sensors more than what they draw.
 foreach(entry ${SUITE_PROGRAMS})
-  string(REGEX MATCH "^(.*)\\|(.*)$" entry "${entry}")
+  string(REGEX MATCH "^(.*)\\|(.*)\\|(.*)$" entry "${entry}")
   set(prefix ${CMAKE_MATCH_1})
   set(program ${CMAKE_MATCH_2})
+  set(filter ${CMAKE_MATCH_3})
   if(NOT EXISTS ${program})
     add_test(${prefix}_NOT_BUILT ${program})
     continue()
   endif()
-  execute_process(COMMAND ${program} --gtest_list_tests OUTPUT_VARIABLE listed RESULT_VARIABLE status)
+  execute_process(COMMAND ${program} --gtest_list_tests --gtest_filter=${filter} OUTPUT_VARIABLE listed RESULT_VARIABLE status)
   if(NOT status EQUAL 0)
     message(FATAL_ERROR "${program} --gtest_list_tests: status ${status}")
   endif()
