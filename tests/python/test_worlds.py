@@ -606,14 +606,14 @@ class Worlds(unittest.TestCase):
 
     def test_a_recording_begins_with_its_call_and_ends_with_stop_or_the_world(self):
         with tempfile.TemporaryDirectory() as folder:
-            world = neritic.open(MISSION, seed=1)
+            world = neritic.open(DIVE, seed=1)
             with self.assertRaisesRegex(neritic.BadInput, "record: found folder"):
                 world.record("/proc/run")
             recording = world.record(Path(folder, "a"))
             world.tick(24)
             with self.assertRaisesRegex(neritic.BadInput, "found a recording that goes on"):
                 world.record(Path(folder, "b"))
-            with neritic.open(MISSION, seed=2) as other, self.assertRaisesRegex(neritic.BadInput, "a.mcap, which another program writes"):
+            with neritic.open(DIVE, seed=2) as other, self.assertRaisesRegex(neritic.BadInput, "a.mcap, which another program writes"):
                 other.record(Path(folder, "a"))
             recording.stop()
             recording.stop()
@@ -626,7 +626,7 @@ class Worlds(unittest.TestCase):
             self.assertEqual(sorted(os.listdir(folder)), ["a.csv", "a.mcap", "b.csv", "b.mcap"])
 
     def test_a_world_has_its_agents_names(self):
-        with neritic.open(MISSION, seed=1) as world:
+        with neritic.open(DIVE, seed=1) as world:
             self.assertEqual(list(world), list(world.agents))
             self.assertIn("rov", world)
             self.assertNotIn("submarine", world)
