@@ -198,7 +198,7 @@ TEST(ServerSocket, TenThousandConnectionsThatSayNothingCrowdEachOtherOut) {
   Echo echo;
   auto client = echo.client();
   ASSERT_EQ(echo.ask(*client, "before"), "before");
-  const std::size_t before = resident_bytes();
+  [[maybe_unused]] const std::size_t before = resident_bytes();
   std::vector<Descriptor> sockets;
   std::size_t most = 0;
   for (std::size_t i = 0; i < many; ++i) {

@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <thread>
@@ -113,8 +114,22 @@ TEST(Udp, ATakenPortIsOneLine) {
 }
 
 // A port of this machine that nobody has.
+// Below the ports that the system gives to connections of its own choice, of which other tests make
+// many; another one for each call and process.
 Address free_tcp() {
-  return {Transport::kTcp, 0x7f000001, UdpReceiver::bind({.port = 0})->port()};
+  static int calls = 0;
+  for (int i = 0; i < 100; ++i) {
+    const auto port = static_cast<std::uint16_t>(10'000 + (37 * ::getpid() + 7 * calls++) % 20'000);
+    const Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    sockaddr_in at{};
+    at.sin_family = AF_INET;
+    at.sin_addr.s_addr = htonl(0x7f000001);
+    at.sin_port = htons(port);
+    if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&at), sizeof at) == 0)
+      return {Transport::kTcp, 0x7f000001, port};
+  }
+  ADD_FAILURE() << "no free port";
+  return {Transport::kTcp, 0x7f000001, 0};
 }
 
 // Polls the receiver; true: done before `ms` went by.
