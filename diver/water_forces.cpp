@@ -44,8 +44,8 @@ DepthLine depth_of(const PartMotion& m, const Immersion& immersion) {
           glm::dot(immersion.down, m.body_from_part[0])};
 }
 
-// Of a part's first and its second direction across. GCC and Clang compute both by one instruction,
-// each to the bits of a double alone.
+// A number for each of a part's two directions across. GCC and Clang compute both numbers by one
+// instruction, each to the bits that a double alone has.
 using Across = double __attribute__((vector_size(16)));
 
 // Drag of a part's strips in a direction across: the sums of c, c s and c s^2, where c is a strip's

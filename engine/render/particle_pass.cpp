@@ -2,11 +2,12 @@
 #include <array>
 
 #include "engine/render/lighting.hpp"
+#include "engine/render/particles.hpp"
 #include "engine/render/raster_draws.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/render/water_passes.hpp"
 #include "shaders.hpp"
-#include "shared/bubble.h"
+#include "shared/particles.h"
 
 namespace neritic::render {
 namespace {
@@ -54,46 +55,52 @@ std::vector<Run> runs_of(std::span<const shared::Particle> particles) {
 
 }  // namespace
 
+Status WaterPasses::make_particle_pipeline(std::uint32_t view_mask, std::uint32_t kind,
+                                           const ShaftInputs* shafts) {
+  gpu::Pipeline& pipeline = particles_[pipeline_key(view_mask, kind, shafts)];
+  if (pipeline) return {};
+  gpu::GraphicsPipelineDesc desc;
+  desc.name = "particles";
+  desc.vertex_code = shafts ? shaders::kParticleLitVert : shaders::kParticleVert;
+  desc.fragment_code = fragment_code_of(kind);
+  desc.layout.bindings = {{shared::kParticleViews, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+                          {shared::kParticleLighting, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+                          {shared::kParticleDepth, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+                          {shared::kParticleStream, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+  if (shafts)
+    for (const auto& [binding, type] :
+         {std::pair{shared::kParticleSun, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+          std::pair{shared::kParticleCascades, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
+          std::pair{shared::kParticleCaustics, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}})
+      desc.layout.bindings.push_back({binding, type});
+  desc.layout.push_constant_bytes = sizeof(shared::ParticlePush);
+  desc.constants = {{shared::kSpecParticleKind, kind},
+                    {shared::kSpecParticleMultiview, view_mask != 0}};
+  if (shafts) desc.constants.push_back({shared::kSpecParticleCascades, shafts->cascade_count});
+  desc.color_formats = {kHdrFormat};
+  desc.depth_format = kDepthFormat;
+  desc.depth_write = false;
+  desc.blend = gpu::Blend::kAlphaOver;
+  desc.view_mask = view_mask;
+  NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
+  return {};
+}
+
 Result<graph::ImageHandle> WaterPasses::declare_particles(
     graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle hdr,
     const GBuffer& gbuffer, const ViewSet& views, const shared::Lighting& lighting,
-    const std::vector<shared::Particle>& particles, float shutter, const ShaftInputs* shafts) {
-  if (particles.empty()) return hdr;
+    const ViewParticles& seen, float shutter, const ShaftInputs* shafts) {
   if (shafts && !tile_sampler_.handle()) {
     NERITIC_TRY(tile_sampler_,
                 gpu::Sampler::create(device_, {.name = "particles' net", .mipmapped = false}));
   }
   const std::vector<std::uint32_t> masks = view_masks_of(gbuffer.layers, device_);
-  const std::vector<Run> runs = runs_of(particles);
   for (const std::uint32_t mask : masks)
-    for (const Run& run : runs) {
-      gpu::Pipeline& pipeline = particles_[pipeline_key(mask, run.kind, shafts)];
-      if (pipeline) continue;
-      gpu::GraphicsPipelineDesc desc;
-      desc.name = "particles";
-      desc.vertex_code = shafts ? shaders::kParticleLitVert : shaders::kParticleVert;
-      desc.fragment_code = fragment_code_of(run.kind);
-      desc.layout.bindings = {{shared::kParticleViews, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
-                              {shared::kParticleLighting, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
-                              {shared::kParticleDepth, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-                              {shared::kParticleStream, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
-      if (shafts)
-        for (const auto& [binding, type] :
-             {std::pair{shared::kParticleSun, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
-              std::pair{shared::kParticleCascades, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE},
-              std::pair{shared::kParticleCaustics, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}})
-          desc.layout.bindings.push_back({binding, type});
-      desc.layout.push_constant_bytes = sizeof(shared::ParticlePush);
-      desc.constants = {{shared::kSpecParticleKind, run.kind},
-                        {shared::kSpecParticleMultiview, mask != 0}};
-      if (shafts) desc.constants.push_back({shared::kSpecParticleCascades, shafts->cascade_count});
-      desc.color_formats = {kHdrFormat};
-      desc.depth_format = kDepthFormat;
-      desc.depth_write = false;
-      desc.blend = gpu::Blend::kAlphaOver;
-      desc.view_mask = mask;
-      NERITIC_TRY(pipeline, gpu::Pipeline::create(device_, desc));
-    }
+    for (const std::uint32_t kind : seen.kinds)
+      NERITIC_TRY_STATUS(make_particle_pipeline(mask, kind, shafts));
+  const std::vector<shared::Particle>& particles = seen.particles;
+  if (particles.empty()) return hdr;
+  const std::vector<Run> runs = runs_of(particles);
   struct Data {
     graph::ImageHandle hdr;
   };

@@ -59,8 +59,8 @@ void thin_out(std::vector<shared::Particle>& particles, double spot_px, double p
     const double own_px = particle.radius_m * pixels / range_m;
     if (!(own_px < spot_px)) return false;
     const double share = std::max(own_px / spot_px, kLeastShare);
-    // The lowest byte of a bubble's seed turns with its swing.
-    const std::uint64_t of_it = mix64((particle.seed >> 8) + (std::uint64_t{particle.kind} << 32));
+    // The lowest byte of a bubble's seed turns with its swing; its kind changes with its size.
+    const std::uint64_t of_it = mix64(particle.seed >> 8);
     if (static_cast<double>(of_it) * 0x1p-64 >= share) return true;
     particle.opacity = static_cast<float>(particle.opacity / share);
     return false;
@@ -97,12 +97,16 @@ ViewParticles view_particles(const scene::MotionSource& motion, SnowField& snow,
   std::vector<shared::Particle> placed;
   std::vector<Drawn> drawn;
   if (water.snow) {
+    out.kinds.push_back(shared::kParticleSnow);
     std::vector<SnowField::Run> cells;
     snow.place(*water.snow, seed, sight, time_s, snow_share, dim ? pixels : 0.0, placed, cells);
     for (const SnowField::Run& cell : cells)
       drawn.push_back({Layer::kSnowBefore, cell.distance2_m2, cell.first, cell.count});
     out.shutter_s = water.snow->shutter_s;
   }
+  if (!water.bubbles.empty())
+    out.kinds.insert(out.kinds.end(), {shared::kParticleBubbleSpot, shared::kParticleBubble});
+  if (!water.silt.empty()) out.kinds.push_back(shared::kParticleSilt);
   const std::size_t snow_cells = drawn.size();
   std::vector<double> silt_m2;  // squared distances
   std::vector<WorldParticle> others;

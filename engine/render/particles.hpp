@@ -37,12 +37,12 @@ void add_silt(const scene::MotionSource& motion, const scene::SiltSource& source
               std::uint64_t number, std::uint64_t seed, double time_s,
               std::vector<WorldParticle>& out);
 
-// All particles that a view set sees at a time, relative to its origin, from far to near; snow by
-// the cells of its lattice.
-// shutter_s: of the exposure, for streaks.
+// All particles that a view set sees at a time, relative to its origin, kind by kind, each kind
+// from far to near; snow by the cells of its lattice, behind the silt and before it.
 struct ViewParticles {
   std::vector<shared::Particle> particles;
-  double shutter_s = 0.0;
+  std::vector<std::uint32_t> kinds;  // that the scene's water may show at any time
+  double shutter_s = 0.0;            // of the exposure, for streaks
 };
 bool has_particles(const scene::Scene& scene);
 // snow, bubbles: what they keep from call to call. spot_px: those of a smaller radius in the

@@ -13,13 +13,13 @@
 #include "engine/scene/scene_water.hpp"
 #include "shared/forward_scatter.h"
 #include "shared/lighting.h"
-#include "shared/particles.h"
 #include "shared/shimmer.h"
 
 namespace neritic::render {
 
 struct GBuffer;
 struct ShaftInputs;
+struct ViewParticles;
 
 class WaterPasses {
  public:
@@ -37,21 +37,25 @@ class WaterPasses {
                                              graph::ImageHandle hdr, const GBuffer& gbuffer,
                                              const ViewSet& views, const WaterColumn& column,
                                              double time_s, std::uint64_t seed);
-  // Particles over the picture, from far to near. They must live until the graph has run. shutter:
-  // share of the time to the next frame that the exposure lasts. shafts: of the sun's light, which
-  // particles then stand in; nullptr: none.
+  // Particles over the picture, in their order. They must live until the graph has run. Makes the
+  // pipelines of all their kinds, so that no later frame waits for one. shutter: share of the time
+  // to the next frame that the exposure lasts. shafts: of the sun's light, which particles then
+  // stand in; nullptr: none.
   Result<graph::ImageHandle> declare_particles(graph::FrameGraph& graph, const std::string& prefix,
                                                graph::ImageHandle hdr, const GBuffer& gbuffer,
                                                const ViewSet& views,
                                                const shared::Lighting& lighting,
-                                               const std::vector<shared::Particle>& particles,
-                                               float shutter, const ShaftInputs* shafts = nullptr);
+                                               const ViewParticles& particles, float shutter,
+                                               const ShaftInputs* shafts = nullptr);
 
  private:
+  Status make_particle_pipeline(std::uint32_t view_mask, std::uint32_t kind,
+                                const ShaftInputs* shafts);
+
   gpu::Device& device_;
   gpu::Pipeline scatter_first_, scatter_down_, scatter_up_, scatter_add_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, gpu::Pipeline> shimmer_;  // layers, waves
-  std::map<std::uint32_t, gpu::Pipeline> particles_;  // by view mask and light
+  std::map<std::uint32_t, gpu::Pipeline> particles_;  // by view mask, kind and light
   gpu::Sampler tile_sampler_;                         // linear, repeating; with shafts
 };
 

@@ -1,6 +1,6 @@
-// What all fragment stages of particles share; a stage declares the other inputs that it reads
-// (shared/particle_vertex.glsl has all): a CPU driver copies those of a stage for each spot, read or
-// not. GLSL only.
+// Inputs, output and a function of all fragment stages of particles. A stage declares only the other
+// inputs that it reads (shared/particle_vertex.glsl has all): a CPU driver spends time on each
+// declared input of each spot, read or not. GLSL only.
 layout(location = 0) in vec2 place;
 layout(location = 1) flat in vec3 shape;
 

@@ -31,7 +31,7 @@ uint glow_samples() { return 4u; }
 
 layout(location = 0) out vec2 place;       // pixels from the streak's middle: along, across
 layout(location = 1) flat out vec3 shape;  // half streak, radius (pixels), opacity
-layout(location = 2) flat out vec4 body;   // light that arrives from it, exposed; a small bubble's opacity
+layout(location = 2) flat out vec4 body;   // light that arrives from it, exposed; the opacity of a small bubble
 layout(location = 3) flat out uint seed;
 layout(location = 4) flat out vec4 flatness;  // distance (m), radius (m), direction of the streak
 // A bubble's short axis on the picture and its height over its width there; the way from the
@@ -129,8 +129,8 @@ void light_bubble(vec3 at, vec3 along, Sight sight, float skylight, float lit) {
   veil = sight.added * light.exposure;
 }
 
-// The mean over a bubble of few pixels: by places on two rings, which halve the radius of what
-// light passes and what it mirrors wholly (beyond 0.75).
+// The mean over a bubble less than a pixel wide, from places on two rings: one where it lets light
+// pass, one where it mirrors all (beyond 0.75 of its radius). Each ring weighs its share of the disk.
 vec4 mean_bubble_light(float radius) {
   vec4 sum = vec4(0.0);
   [[unroll]] for (int i = 0; i < 6; ++i) {

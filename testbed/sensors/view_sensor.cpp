@@ -210,7 +210,7 @@ Result<graph::ImageHandle> declare_lit(const FrameParts& frame, const std::strin
     const double shutter = step_s > 0.0 ? work.particles.shutter_s / step_s : 0.0;
     NERITIC_TRY(
         hdr, frame.renderer.water().declare_particles(
-                 frame.graph, prefix, hdr, g, views, lighting, work.particles.particles,
+                 frame.graph, prefix, hdr, g, views, lighting, work.particles,
                  static_cast<float>(shutter), light.shaft_inputs ? &*light.shaft_inputs : nullptr));
   }
   return hdr;

@@ -426,8 +426,12 @@ TEST(Particles, KindsFollowOneAnotherAndSmallBubblesAreSpots) {
   const ViewSet views{.width = 600, .height = 600, .views = {view}};
   SnowField snow;
   BubbleField bubbles;
-  const std::vector<shared::Particle> seen =
-      view_particles(scene::MotionSource(scene, &goes), snow, bubbles, 7, views, 50.0).particles;
+  const ViewParticles shown =
+      view_particles(scene::MotionSource(scene, &goes), snow, bubbles, 7, views, 50.0);
+  const std::vector<shared::Particle>& seen = shown.particles;
+  // Also those of which nothing is in sight: their pipelines are made at once.
+  EXPECT_EQ(std::set(shown.kinds.begin(), shown.kinds.end()),
+            (std::set<std::uint32_t>{0, 1, 2, 3}));
   std::vector<std::uint32_t> kinds;
   double behind_m = 1e9, before_m = 0.0;  // of the snow
   const double pixels = 600.0 / (view.tangents.right - view.tangents.left);

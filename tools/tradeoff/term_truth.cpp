@@ -59,7 +59,7 @@ std::vector<Column> columns_of(const sonar::BeamGrid& grid, const scene::Sonar& 
   return out;
 }
 
-// What is beyond the whole number, exactly, and in less time than std::fmod takes.
+// The part of a number behind its whole part, exact; it takes less time than std::fmod.
 double fraction(double x) {
   return x - std::floor(x);
 }

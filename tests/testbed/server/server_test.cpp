@@ -419,7 +419,7 @@ TEST(ArrayRing, LeavesALentArrayAloneUntilItIsGivenBack) {
   const std::uint64_t first = ring->put(filled(1)).value();
   const auto loan = reader->lend(first, 10000);
   ASSERT_TRUE(loan);
-  // What the reader writes, it alone sees.
+  // Only the reader sees its own changes.
   loan->bytes[3] = std::byte{77};
   std::vector<std::byte> got(10000);
   ASSERT_TRUE(other->read(first, got));
