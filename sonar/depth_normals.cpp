@@ -7,8 +7,11 @@
 #include "sonar/depth_normals.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <utility>
 
 namespace neritic::sonar {
 namespace {
@@ -18,7 +21,11 @@ constexpr std::size_t kFewest = 64;          // fourth differences that a median
 constexpr double kMedianOfNormal = 0.6745;   // of the absolute value, in standard deviations
 constexpr double kClean_rad = radians(1.0);  // less error is left as it is
 constexpr double kWanted_rad = radians(2.0);
-constexpr int kWidest = 7;  // pixels to each side
+constexpr int kWidest = 7;                                           // pixels to each side
+constexpr double kUnseen = std::numeric_limits<double>::infinity();  // lies on no plane
+constexpr std::size_t kLanes = 16;  // columns of a fit, to a whole number of vectors
+// Pixels around the image that a fit may read: from -kWidest to kLanes - kWidest - 1.
+constexpr std::int64_t kBorder = 8;
 
 // For a difference over 2 pixels, and for a plane fitted to 2 w + 1 by 2 w + 1: standard deviation
 // of a slope for noise 1 a pixel. Both slopes tilt a normal: hence sqrt(2).
@@ -78,10 +85,13 @@ std::optional<Vec3> step(const std::optional<Vec3>& before, const Vec3& here,
 class Estimator {
  public:
   explicit Estimator(const SonarInput& in)
-      : in_(in), inverse_(in.depth.size(), 0.0), tiles_x_((in.width + kTile - 1) / kTile) {
+      : in_(in),
+        stride_(in.width + 2 * kBorder),
+        inverse_(static_cast<std::size_t>(stride_ * (in.height + 2 * kBorder)), kUnseen),
+        tiles_x_((in.width + kTile - 1) / kTile) {
     for (std::uint32_t v = 0; v < in.height; ++v)
       for (std::uint32_t u = 0; u < in.width; ++u)
-        if (const auto p = point_of(in, u, v)) inverse_[index(u, v)] = -1.0 / p->z;
+        if (const auto p = point_of(in, u, v)) inverse_[place(u, v)] = -1.0 / p->z;
     measure_noise();
   }
 
@@ -139,9 +149,13 @@ class Estimator {
   std::size_t index(std::int64_t u, std::int64_t v) const {
     return static_cast<std::size_t>(v * in_.width + u);
   }
-  // 0 beyond the edges and where nothing is seen.
+  std::size_t place(std::int64_t u, std::int64_t v) const {
+    return static_cast<std::size_t>((v + kBorder) * stride_ + u + kBorder);
+  }
+  // 0 beyond the edges, up to the border, and where nothing is seen.
   double inverse(std::int64_t u, std::int64_t v) const {
-    return u < 0 || v < 0 || u >= in_.width || v >= in_.height ? 0.0 : inverse_[index(u, v)];
+    const double q = inverse_[place(u, v)];
+    return q == kUnseen ? 0.0 : q;
   }
   std::optional<Vec3> point(std::int64_t u, std::int64_t v) const {
     if (inverse(u, v) == 0.0) return std::nullopt;
@@ -198,6 +212,7 @@ class Estimator {
     return n * ((glm::dot(n, here) > 0.0 ? -1.0 : 1.0) / size);
   }
 
+  using Lanes = std::array<double, kLanes>;
   struct Fit {
     Vec3 plane{0.0};  // q = plane.x + plane.y du + plane.z dv
     int pixels = 0;   // that lie on it
@@ -207,22 +222,42 @@ class Estimator {
   std::optional<Fit> fit_from(const Vec3& guess, double slack, std::int64_t u, std::int64_t v,
                               int w, double noise) const {
     Fit fit{guess};
+    const auto columns = static_cast<std::size_t>(2 * w + 1), lanes = (columns + 3) / 4 * 4;
+    Lanes across{}, aside{}, beyond{};  // du, its size, and what keeps lanes out that are no column
+    for (std::size_t i = 0; i < lanes; ++i) {
+      across[i] = static_cast<double>(i) - w;
+      aside[i] = std::abs(across[i]);
+      beyond[i] = i < columns ? 0.0 : kUnseen;
+    }
+    Mat3 normal(0.0);
+    Vec3 right(0.0);
     for (int round = 0; round < 3; ++round) {
-      Mat3 normal(0.0);
-      Vec3 right(0.0);
-      fit.pixels = 0;
-      for (int dv = -w; dv <= w; ++dv)
-        for (int du = -w; du <= w; ++du) {
-          const double there = inverse(u + du, v + dv);
-          if (there == 0.0) continue;
-          const double off = std::abs(there - fit.plane.x - fit.plane.y * du - fit.plane.z * dv);
-          const double more = round == 0 ? slack * std::max(std::abs(du), std::abs(dv)) : 0.0;
-          if (off > 4.0 * noise + more) continue;
-          const Vec3 at(1.0, du, dv);
-          normal += glm::outerProduct(at, at);
-          right += at * there;
-          ++fit.pixels;
+      const double more = round == 0 ? slack : 0.0;
+      // Sums over the rows of a column: of 1, dv and dv squared, and of 1 and dv times q.
+      Lanes n{}, n_v{}, n_vv{}, q{}, q_v{};
+      for (int row = -w; row <= w; ++row) {
+        const double* there = &inverse_[place(u - w, v + row)];
+        const double dv = row, up = std::abs(dv), level = fit.plane.x + fit.plane.z * dv;
+        for (std::size_t i = 0; i < lanes; ++i) {
+          const double off = std::abs(there[i] - (level + fit.plane.y * across[i])) + beyond[i];
+          const double most = 4.0 * noise + more * (aside[i] > up ? aside[i] : up);
+          const bool lies = off <= most;
+          const double on = lies ? 1.0 : 0.0, value = lies ? there[i] : 0.0;
+          n[i] += on, n_v[i] += on * dv, n_vv[i] += on * dv * dv;
+          q[i] += value, q_v[i] += value * dv;
         }
+      }
+      const Mat3 normal_before = std::exchange(normal, Mat3(0.0));
+      const Vec3 right_before = std::exchange(right, Vec3(0.0));
+      for (std::size_t i = 0; i < columns; ++i) {
+        const double du = across[i];
+        normal += Mat3(n[i], du * n[i], n_v[i], du * n[i], du * du * n[i], du * n_v[i], n_v[i],
+                       du * n_v[i], n_vv[i]);
+        right += Vec3(q[i], du * q[i], q_v[i]);
+      }
+      // The same pixels tell the same plane.
+      if (normal == normal_before && right == right_before) break;
+      fit.pixels = static_cast<int>(normal[0][0]);
       if (fit.pixels < 3 || !(std::abs(glm::determinant(normal)) > 1e-9)) return std::nullopt;
       fit.plane = glm::inverse(normal) * right;
     }
@@ -271,7 +306,8 @@ class Estimator {
   }
 
   const SonarInput& in_;
-  std::vector<double> inverse_;  // 1 / planar depth; 0: nothing is seen
+  std::int64_t stride_;
+  std::vector<double> inverse_;  // 1 / planar depth or kUnseen, in rows of stride_, with a border
   std::int64_t tiles_x_;
   std::vector<double> noise_m_;  // by tile
 };

@@ -127,18 +127,21 @@ void ClockMap::keep(TimeNs sent_ns, TimeNs arrived_ns) {
 bool ClockMap::agreed(std::size_t bucket, std::size_t place) const {
   if (buckets_[bucket].sparse) return true;
   const Point& point = buckets_[bucket].quick[place];
-  std::size_t others = 0, agree = 0;
+  const std::size_t first = bucket - std::min(bucket, kNearBuckets);
   const std::size_t end = std::min(bucket + kNearBuckets + 1, buckets_.size());
-  for (std::size_t b = bucket - std::min(bucket, kNearBuckets); b < end; ++b)
+  std::size_t all = 0, agree = 0;
+  for (std::size_t b = first; b < end; ++b) all += buckets_[b].count;
+  const double enough = std::max(1.0, kAgreeing * static_cast<double>(all - 1));
+  for (std::size_t b = first; b < end; ++b)
     for (std::size_t i = 0; i < buckets_[b].count; ++i) {
       if (b == bucket && i == place) continue;
       const Point& other = buckets_[b].quick[i];
       const double apart_ns = apart(other.sent_ns, point.sent_ns);
       const double longer_ns = apart(other.way_ns, point.way_ns) - slope_ * apart_ns;
-      ++others;
       agree += std::abs(longer_ns) <= kAgree_ns + kAgreeDrift * std::abs(apart_ns) ? 1 : 0;
+      if (static_cast<double>(agree) >= enough) return true;
     }
-  return static_cast<double>(agree) >= std::max(1.0, kAgreeing * static_cast<double>(others));
+  return false;
 }
 
 // The quickest packet of each bucket that others agree with; while none is, the quickest of all.
