@@ -55,6 +55,8 @@ Result<std::unique_ptr<Session>> Session::create(gpu::Device& device, scene::Sce
   session->skylight_ = std::make_unique<Skylight>();
   session->snow_ = std::make_unique<render::SnowField>();
   session->bubbles_ = std::make_unique<render::BubbleField>();
+  if (const auto& water = session->scene_.water; water && water->waves)
+    session->waves_ = SeaWaves(*water->waves);
   session->moving_ = render::moving_objects(session->scene_);
   for (const std::uint8_t moves : session->moving_) session->still_.push_back(moves ? 0 : 1);
   session->echo_tables_ = std::make_unique<EchoTables>(std::move(tables));
@@ -161,7 +163,7 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
       graph,         device_,          *renderer_, scene_,    *gpu_scene_,
       motion,        work.state,       deformed,   readback_, request.seed.value_or(scene_.seed),
       work.light,    *sun_maps_,       *skylight_, moving_,   still_,
-      request.frame, work.deform_need, *snow_,     *bubbles_};
+      request.frame, work.deform_need, *snow_,     *bubbles_, waves_};
   const auto add = [&](const std::string& label, const ViewsRequest& set, std::size_t index,
                        auto& works, std::vector<SensorFrame::Views>& out) -> Status {
     works.push_back(std::make_unique<FrameWork::Picture>());

@@ -84,6 +84,7 @@ class Session {
   std::unique_ptr<Skylight> skylight_;
   std::unique_ptr<render::SnowField> snow_;
   std::unique_ptr<render::BubbleField> bubbles_;
+  SeaWaves waves_;  // summed once: it takes as long as a tenth of a headset's frame
   std::vector<std::uint8_t> moving_, still_;  // flags by object
   std::vector<double> lamp_cd_;  // of lamps at their full intensity, once one was dimmed
   std::string plan_text_, plan_graphviz_;

@@ -175,8 +175,7 @@ Result<graph::ImageHandle> declare_lit(const FrameParts& frame, const std::strin
   graph::ImageHandle scattered;
   std::optional<shared::Waves> waves;
   if (lighting.terms & shared::kLightWaves) {
-    waves = render::gpu_waves(SeaWaves(*frame.scene.water->waves), views.origin_m(),
-                              frame.state.time_s);
+    waves = render::gpu_waves(frame.waves, views.origin_m(), frame.state.time_s);
     // The slopes of what is left out count among those that no pixel resolves.
     waves->count = std::min(waves->count, detail.waves);
   }

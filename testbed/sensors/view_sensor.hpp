@@ -63,6 +63,7 @@ struct FrameParts {
   std::vector<std::uint32_t>& deform_need;
   render::SnowField& snow;
   render::BubbleField& bubbles;
+  const SeaWaves& waves;  // of the surface; still where the scene names none
 };
 
 // A view set in one frame: data that the passes borrow, and the buffers that the host reads.
