@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
+#include <span>
 
 #include "engine/core/random.hpp"
 
@@ -187,7 +187,25 @@ BubbleField::Breath BubbleField::breath_of(const scene::BubbleSource& source, co
     }
     breath.bubbles.push_back(bubble);
   }
+  add_gulps(breath, plan);
   return breath;
+}
+
+void BubbleField::add_gulps(Breath& breath, const Plan& plan) {
+  std::ranges::stable_sort(breath.bubbles, {}, &Bubble::gulp);
+  breath.gulps.resize(static_cast<std::size_t>(plan.gulps));
+  for (std::size_t i = 0; i < breath.bubbles.size(); ++i) {
+    const Bubble& bubble = breath.bubbles[i];
+    Gulp& gulp = breath.gulps[bubble.gulp];
+    if (gulp.count++ == 0) gulp.first = i;
+    const auto add = [&](const Part& part) {
+      gulp.slowest_m_s = std::min(gulp.slowest_m_s, part.speed_m_s);
+      gulp.fastest_m_s = std::max(gulp.fastest_m_s, part.speed_m_s);
+      gulp.widest_m = std::max(gulp.widest_m, part.radius_m);
+    };
+    add(bubble.part);
+    std::ranges::for_each(std::span(breath.parts).subspan(bubble.first_part, bubble.parts), add);
+  }
 }
 
 void BubbleField::append(const scene::MotionSource& motion, const scene::BubbleSource& source,
@@ -238,50 +256,67 @@ void BubbleField::place(const scene::BubbleSource& source, const Vec3& from_m, c
 void BubbleField::add_breath(const scene::MotionSource& motion, const scene::BubbleSource& source,
                              const Plan& plan, const Breath& breath, double time_s,
                              std::vector<WorldParticle>& out, const SphereCulling* sight) {
-  // Where the source is as a gulp begins and ends; asked for once a bubble is left of it.
-  struct Ends {
-    Vec3 first_m, last_m;
-  };
-  std::vector<std::optional<Ends>> gulps(static_cast<std::size_t>(plan.gulps));
-  const auto source_at = [&](double gulp) {
-    return motion
-        .place_of(static_cast<std::size_t>(source.object), source.joint, source.position_m,
-                  breath.begins_s + plan.out_s * gulp / plan.gulps)
-        .position_m;
-  };
-  for (const Bubble& bubble : breath.bubbles) {
-    const double age_s = time_s - bubble.born_s;
-    if (age_s <= 0.0 || age_s > bubble.gone_s) continue;
-    const double parted_s = age_s - bubble.broken_s;
-    const bool broken = parted_s > 0.0;
-    const Rise rise = rise_of(bubble.part.speed_m_s, age_s, plan.burst_m_s);
-    // Parts rise more slowly than the whole, by not more than this.
-    const double behind_m = broken ? parted_s * (bubble.part.speed_m_s - kPlumeRise_m_s) +
-                                         kPartWidths * bubble.part.radius_m
-                                   : 0.0;
-    if (rise.m - behind_m > source.height_m) continue;
-    auto& ends = gulps[bubble.gulp];
-    if (!ends) {
-      const auto gulp = static_cast<double>(bubble.gulp);
-      ends = Ends{source_at(gulp), source_at(gulp + plan.share())};
+  for (std::size_t g = 0; g < breath.gulps.size(); ++g) {
+    const Gulp& gulp = breath.gulps[g];
+    const auto left_at = [&](double since) {
+      return breath.begins_s + plan.out_s * (static_cast<double>(g) + since) / plan.gulps;
+    };
+    const double first_s = left_at(0.0), last_s = left_at(plan.share());
+    if (gulp.count == 0 || time_s <= first_s) continue;
+    const double lowest_m = gulp.slowest_m_s * std::max(time_s - last_s, 0.0);
+    if (lowest_m > source.height_m + kPartWidths * gulp.widest_m) continue;
+    const auto source_at = [&](double left_s) {
+      return motion
+          .place_of(static_cast<std::size_t>(source.object), source.joint, source.position_m,
+                    left_s)
+          .position_m;
+    };
+    const Vec3 first_m = source_at(first_s), last_m = source_at(last_s);
+    if (sight) {
+      // About the upright line along which they are, with room for the plume's width, their swing
+      // and growth.
+      const double highest_m = std::max(
+          lowest_m,
+          std::min(rise_of(gulp.fastest_m_s, time_s - first_s, plan.burst_m_s).m, source.height_m));
+      const Vec3 from_m = 0.5 * (first_m + last_m) - sight->origin_m();
+      if (!sight->may_see_between(from_m + Vec3(0.0, lowest_m, 0.0),
+                                  from_m + Vec3(0.0, highest_m, 0.0),
+                                  0.5 * glm::distance(first_m, last_m) + plume_m(highest_m) +
+                                      10.0 * gulp.widest_m + kSpotRoom_m))
+        continue;
     }
-    const Vec3 from_m = glm::mix(ends->first_m, ends->last_m, bubble.within);
-    // About where it is, with room for the plume's width, its swing and its growth.
-    if (sight &&
-        !sight->may_see(from_m + Vec3(0.0, rise.m, 0.0) - sight->origin_m(),
-                        plume_m(rise.m) + behind_m + 10.0 * bubble.part.radius_m + kSpotRoom_m))
-      continue;
-    if (!broken) {
-      place(source, from_m, bubble.off, bubble.part, Vec3(0.0), age_s, rise.m, rise.m_s, out);
-      continue;
-    }
-    const double part_m = kPartWidths * bubble.part.radius_m * (1.0 - std::exp(-parted_s / 0.4));
-    for (std::size_t i = 0; i < bubble.parts; ++i) {
-      const Part& part = breath.parts[bubble.first_part + i];
-      place(source, from_m, bubble.off, part, part_m * part.way, age_s,
-            bubble.broken_at_m + part.speed_m_s * parted_s, part.speed_m_s, out);
-    }
+    for (const Bubble& bubble : std::span(breath.bubbles).subspan(gulp.first, gulp.count))
+      add_bubble(source, plan, breath, bubble, glm::mix(first_m, last_m, bubble.within), time_s,
+                 out, sight);
   }
+}
+
+// A bubble that left there, or its parts.
+void BubbleField::add_bubble(const scene::BubbleSource& source, const Plan& plan,
+                             const Breath& breath, const Bubble& bubble, const Vec3& from_m,
+                             double time_s, std::vector<WorldParticle>& out,
+                             const SphereCulling* sight) {
+  const double age_s = time_s - bubble.born_s;
+  if (age_s <= 0.0 || age_s > bubble.gone_s) return;
+  const double parted_s = age_s - bubble.broken_s;
+  const bool broken = parted_s > 0.0;
+  const Rise rise = rise_of(bubble.part.speed_m_s, age_s, plan.burst_m_s);
+  // Parts rise more slowly than the whole, by not more than this.
+  const double behind_m = broken ? parted_s * (bubble.part.speed_m_s - kPlumeRise_m_s) +
+                                       kPartWidths * bubble.part.radius_m
+                                 : 0.0;
+  if (rise.m - behind_m > source.height_m) return;
+  // About where it is, with room for the plume's width, its swing and its growth.
+  if (sight &&
+      !sight->may_see(from_m + Vec3(0.0, rise.m, 0.0) - sight->origin_m(),
+                      plume_m(rise.m) + behind_m + 10.0 * bubble.part.radius_m + kSpotRoom_m))
+    return;
+  if (!broken)
+    return place(source, from_m, bubble.off, bubble.part, Vec3(0.0), age_s, rise.m, rise.m_s, out);
+  const double part_m = kPartWidths * bubble.part.radius_m * (1.0 - std::exp(-parted_s / 0.4));
+  for (const Part& part : std::span(breath.parts).subspan(bubble.first_part, bubble.parts))
+    place(source, from_m, bubble.off, part, part_m * part.way, age_s,
+          bubble.broken_at_m + part.speed_m_s * parted_s, part.speed_m_s, out);
 }
 
 }  // namespace neritic::render

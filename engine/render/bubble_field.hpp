@@ -42,10 +42,17 @@ class BubbleField {
     double broken_at_m = 0.0;  // over the source
     std::size_t first_part = 0, parts = 0;
   };
+  // Bubbles of a breath that leave together. Speeds are those of their parts too.
+  struct Gulp {
+    std::size_t first = 0, count = 0;  // bubbles
+    double slowest_m_s = std::numeric_limits<double>::infinity(), fastest_m_s = 0.0;
+    double widest_m = 0.0;  // radius
+  };
   struct Breath {
     double begins_s = 0.0;
-    std::vector<Bubble> bubbles;
+    std::vector<Bubble> bubbles;  // gulp by gulp
     std::vector<Part> parts;
+    std::vector<Gulp> gulps;
   };
   struct Settings {
     std::uint64_t seed = 0;
@@ -59,9 +66,13 @@ class BubbleField {
 
   static Breath breath_of(const scene::BubbleSource& source, const Plan& plan, std::uint64_t number,
                           std::uint64_t seed, std::int64_t which);
+  static void add_gulps(Breath& breath, const Plan& plan);
   static void add_parts(Breath& breath, Bubble& bubble, const MixedKey& key, std::uint64_t index);
   static void add_breath(const scene::MotionSource& motion, const scene::BubbleSource& source,
                          const Plan& plan, const Breath& breath, double time_s,
+                         std::vector<WorldParticle>& out, const SphereCulling* sight);
+  static void add_bubble(const scene::BubbleSource& source, const Plan& plan, const Breath& breath,
+                         const Bubble& bubble, const Vec3& from_m, double time_s,
                          std::vector<WorldParticle>& out, const SphereCulling* sight);
   static void place(const scene::BubbleSource& source, const Vec3& from_m, const Vec2& off,
                     const Part& part, const Vec3& aside_m, double age_s, double rise_m,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 #include "engine/core/random.hpp"
 #include "engine/render/bubble_field.hpp"
@@ -20,22 +19,22 @@ std::uint32_t wobbling(std::uint32_t look, std::uint32_t swing) {
 
 // Kinds have pipelines of their own, so they follow one another. The errors where snow or silt
 // floats behind a bubble, and snow among silt, are too small to be seen.
-enum class Layer { kBubbleSpots, kBubbles, kSnowBehind, kSilt, kSnowBefore };
+enum class Layer { kBubbleSpots, kBubbles, kSilt };
 
 Layer layer_of(std::uint32_t kind) {
   if (kind == shared::kParticleSilt) return Layer::kSilt;
   return kind == shared::kParticleBubble ? Layer::kBubbles : Layer::kBubbleSpots;
 }
 
-// Particles in a row that are drawn together.
+// A particle among those placed.
 struct Drawn {
   Layer layer;
   double distance2_m2;
-  std::size_t first, count;
+  std::size_t which;
   bool operator<(const Drawn& other) const {
     if (layer != other.layer) return layer < other.layer;
     return distance2_m2 != other.distance2_m2 ? distance2_m2 > other.distance2_m2
-                                              : first < other.first;
+                                              : which < other.which;
   }
 };
 
@@ -94,26 +93,21 @@ ViewParticles view_particles(const scene::MotionSource& motion, SnowField& snow,
   // Before a lamp a grain may be far brighter than the water.
   const bool dim = motion.scene().lamps.empty() && motion.scene().model_lights.empty();
   const double pixels = pixels_at_a_metre(views);
-  std::vector<shared::Particle> placed;
-  std::vector<Drawn> drawn;
   if (water.snow) {
     out.kinds.push_back(shared::kParticleSnow);
-    std::vector<SnowField::Run> cells;
-    snow.place(*water.snow, seed, sight, time_s, snow_share, dim ? pixels : 0.0, placed, cells);
-    for (const SnowField::Run& cell : cells)
-      drawn.push_back({Layer::kSnowBefore, cell.distance2_m2, cell.first, cell.count});
+    snow.find(*water.snow, seed, sight, time_s, snow_share, dim ? pixels : 0.0);
     out.shutter_s = water.snow->shutter_s;
   }
   if (!water.bubbles.empty())
     out.kinds.insert(out.kinds.end(), {shared::kParticleBubbleSpot, shared::kParticleBubble});
   if (!water.silt.empty()) out.kinds.push_back(shared::kParticleSilt);
-  const std::size_t snow_cells = drawn.size();
-  std::vector<double> silt_m2;  // squared distances
   std::vector<WorldParticle> others;
   for (std::size_t i = 0; i < water.bubbles.size(); ++i)
     bubbles.append(motion, water.bubbles[i], i, seed, time_s, others, &sight);
   for (std::size_t i = 0; i < water.silt.size(); ++i)
     add_silt(motion, water.silt[i], i, seed, time_s, others);
+  std::vector<shared::Particle> placed;
+  std::vector<Drawn> drawn;
   for (const WorldParticle& particle : others) {
     const Vec3 at = particle.position_m - sight.origin_m();
     if (!(particle.opacity > 0.0 && sight.may_see(at, particle.radius_m + kSpotRoom_m))) continue;
@@ -122,29 +116,32 @@ ViewParticles view_particles(const scene::MotionSource& motion, SnowField& snow,
     const bool spot =
         bubble && particle.radius_m * pixels < shared::kBubbleSpot_px * std::sqrt(distance2_m2);
     const std::uint32_t kind = spot ? shared::kParticleBubbleSpot : particle.kind;
-    drawn.push_back({layer_of(kind), distance2_m2, placed.size(), 1});
-    if (drawn.back().layer == Layer::kSilt) silt_m2.push_back(distance2_m2);
+    drawn.push_back({layer_of(kind), distance2_m2, placed.size()});
     placed.push_back({Vec3f(at), static_cast<float>(particle.radius_m),
                       Vec3f(particle.velocity_m_s * out.shutter_s),
                       static_cast<float>(particle.opacity), kind,
                       bubble ? wobbling(particle.seed, swing) : particle.seed});
   }
-  if (!silt_m2.empty()) {
-    const auto middle = silt_m2.begin() + static_cast<std::ptrdiff_t>(silt_m2.size() / 2);
-    std::ranges::nth_element(silt_m2, middle);
-    for (Drawn& snow_cell : std::span(drawn).first(snow_cells))
-      if (snow_cell.distance2_m2 > *middle) snow_cell.layer = Layer::kSnowBehind;
-  }
   std::ranges::sort(drawn, std::less{});
-  out.particles.reserve(placed.size());
-  for (const Drawn& some : drawn)
-    out.particles.insert(out.particles.end(), placed.begin() + std::ptrdiff_t(some.first),
-                         placed.begin() + std::ptrdiff_t(some.first + some.count));
+  const auto silt = std::ranges::find(drawn, Layer::kSilt, &Drawn::layer);
+  for (auto some = drawn.begin(); some != silt; ++some)
+    out.particles.push_back(placed[some->which]);
+  if (silt != drawn.end()) {
+    // From far to near: that in the middle of them.
+    const std::ptrdiff_t count = drawn.end() - silt;
+    if (water.snow) snow.place((silt + (count - 1 - count / 2))->distance2_m2, out.particles);
+    for (auto some = silt; some != drawn.end(); ++some)
+      out.particles.push_back(placed[some->which]);
+  }
+  if (water.snow) snow.place(-1.0, out.particles);
   if (spot_px > 0.0) thin_out(out.particles, spot_px, pixels);
   if (skylight)
     for (shared::Particle& particle : out.particles) {
       const double open = skylight->at(sight.origin_m() + Vec3(particle.position));
-      particle.kind |= static_cast<std::uint32_t>(std::lround(255.0 * (1.0 - open)))
+      // Rounded; it may be less than nought by rounding alone, and is cut to nought then.
+      const double shade = 255.0 * (1.0 - open);
+      const auto whole = static_cast<int>(shade);
+      particle.kind |= static_cast<std::uint32_t>(whole + (shade - whole >= 0.5 ? 1 : 0))
                        << shared::kParticleShadeShift;
     }
   return out;

@@ -201,25 +201,29 @@ void fade_out(SkylightGrid& grid) {
 
 double SkylightGrid::at(const Vec3& place_m) const {
   const Vec3 p = (place_m - low_m) / cell_m - 0.5;
-  const Vec3 base = glm::floor(p), part = p - base;
+  if (!(p.x >= -1 && p.y >= -1 && p.z >= -1 && p.x < nx && p.y < ny && p.z < nz)) return 1.0;
   double sum = 0.0;
-  if (base.x < -1 || base.y < -1 || base.z < -1 || base.x >= nx || base.y >= ny || base.z >= nz)
-    return 1.0;
-  if (base.x >= 0 && base.y >= 0 && base.z >= 0 && base.x + 1 < nx && base.y + 1 < ny &&
-      base.z + 1 < nz) {
+  if (p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < nx - 1.0 && p.y < ny - 1.0 && p.z < nz - 1.0) {
     // Within the grid, where thousands of particles ask.
-    const std::size_t first =
-        cell_of(static_cast<std::size_t>(base.x), static_cast<std::size_t>(base.y),
-                static_cast<std::size_t>(base.z));
-    const std::size_t step[] = {cell_of(1, 0, 0), cell_of(0, 1, 0), cell_of(0, 0, 1)};
-    const Vec3 w[] = {1.0 - part, part};
-    for (int i = 0; i < 8; ++i) {
-      const int x = i & 1, y = i >> 1 & 1, z = i >> 2;
-      sum += w[x].x * w[y].y * w[z].z *
-             double(open[first + (x ? step[0] : 0) + (y ? step[1] : 0) + (z ? step[2] : 0)]);
-    }
+    const int x = static_cast<int>(p.x), y = static_cast<int>(p.y), z = static_cast<int>(p.z);
+    const Vec3 part = p - Vec3(x, y, z);
+    const double wx[] = {1.0 - part.x, part.x};
+    const double low_y = 1.0 - part.y, low_z = 1.0 - part.z;
+    const auto add_row = [&](const float* row, double wy, double wz) {
+      sum += wx[0] * wy * wz * double(row[0]);
+      sum += wx[1] * wy * wz * double(row[1]);
+    };
+    const float* const first =
+        open.data() + cell_of(static_cast<std::size_t>(x), static_cast<std::size_t>(y),
+                              static_cast<std::size_t>(z));
+    const std::size_t up = cell_of(0, 1, 0), on = cell_of(0, 0, 1);
+    add_row(first, low_y, low_z);
+    add_row(first + up, part.y, low_z);
+    add_row(first + on, low_y, part.z);
+    add_row(first + up + on, part.y, part.z);
     return std::isfinite(sum) ? sum : 1.0;
   }
+  const Vec3 base = glm::floor(p), part = p - base;
   for (int i = 0; i < 8; ++i) {
     const Vec3 corner(i & 1, i >> 1 & 1, i >> 2);
     const Vec3 c = base + corner, w = glm::mix(1.0 - part, part, corner);

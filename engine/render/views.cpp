@@ -1,6 +1,7 @@
 #include "engine/render/views.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "engine/core/check.hpp"
 
@@ -109,13 +110,77 @@ bool SphereCulling::may_see(const Vec3& center_m, double radius_m) const {
   return false;
 }
 
-bool SphereCulling::sees_all_of(const Vec3& center_m, double radius_m) const {
-  const auto inside = [&](const Plane& plane) {
-    return glm::dot(plane.normal, center_m) + plane.offset_m >= radius_m;
+bool SphereCulling::may_see_between(const Vec3& from_m, const Vec3& to_m, double radius_m) const {
+  const auto outside = [&](const Plane& plane) {
+    return std::max(glm::dot(plane.normal, from_m), glm::dot(plane.normal, to_m)) + plane.offset_m <
+           -radius_m;
   };
-  if (within_ && !inside(*within_)) return false;
+  if (within_ && outside(*within_)) return false;
   return std::ranges::any_of(
-      views_, [&](const auto& planes) { return std::ranges::all_of(planes, inside); });
+      views_, [&](const auto& planes) { return std::ranges::none_of(planes, outside); });
+}
+
+bool SphereCulling::may_see(const Vec3& center_m, double radius_m, Part& part) const {
+  part.planes_.clear();
+  part.ends_.clear();
+  // False where the ball is outside; else adds the plane where it cuts the ball.
+  const auto add = [&](const Plane& plane) {
+    const double inside_m = glm::dot(plane.normal, center_m) + plane.offset_m;
+    if (inside_m < -radius_m) return false;
+    if (inside_m < radius_m) part.planes_.push_back(plane);
+    return true;
+  };
+  if (within_ && !add(*within_)) return false;
+  part.ends_.push_back(part.planes_.size());
+  for (const auto& planes : views_) {
+    const std::size_t first = part.planes_.size();
+    if (!std::ranges::all_of(planes, add))
+      part.planes_.resize(first);
+    else
+      part.ends_.push_back(part.planes_.size());
+  }
+  return part.ends_.size() > 1;
+}
+
+bool SphereCulling::Part::may_see(const Vec3& center_m, double radius_m) const {
+  const auto inside = [&](const Plane& plane) {
+    return glm::dot(plane.normal, center_m) + plane.offset_m >= -radius_m;
+  };
+  std::size_t plane = 0;
+  for (; plane < ends_.front(); ++plane)
+    if (!inside(planes_[plane])) return false;
+  for (std::size_t view = 1; view < ends_.size(); ++view) {
+    while (plane < ends_[view] && inside(planes_[plane])) ++plane;
+    if (plane == ends_[view]) return true;
+    plane = ends_[view];
+  }
+  return false;
+}
+
+bool SphereCulling::narrow(const Vec3& at_m, double radius_m, double& low_m, double& high_m) const {
+  constexpr double kRounding_m = 1e-6;
+  const auto cut = [&](const Plane& plane, double& low, double& high) {
+    const Vec3& n = plane.normal;
+    const double here_m = n.y * at_m.y + n.z * at_m.z + plane.offset_m + radius_m + kRounding_m;
+    // n.x x + here_m >= 0
+    if (std::abs(n.x) < 1e-9)
+      high = here_m < 0.0 ? -std::numeric_limits<double>::infinity() : high;
+    else if (n.x > 0.0)
+      low = std::max(low, -here_m / n.x);
+    else
+      high = std::min(high, -here_m / n.x);
+  };
+  if (within_) cut(*within_, low_m, high_m);
+  double first_m = high_m, last_m = low_m;
+  for (const auto& planes : views_) {
+    double low = low_m, high = high_m;
+    for (const Plane& plane : planes) cut(plane, low, high);
+    if (!(low <= high)) continue;
+    first_m = std::min(first_m, low);
+    last_m = std::max(last_m, high);
+  }
+  low_m = first_m, high_m = last_m;
+  return low_m <= high_m;
 }
 
 }  // namespace neritic::render

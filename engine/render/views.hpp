@@ -62,19 +62,37 @@ double largest_stretch(const Mat4& m);
 // The same question for many spheres of one set, which this keeps as planes. A sphere that lies
 // past a corner may count as seen.
 class SphereCulling {
- public:
-  explicit SphereCulling(const ViewSet& set);
-  // From where the set's centers count, in the world.
-  const Vec3& origin_m() const { return origin_m_; }
-  bool may_see(const Vec3& center_from_origin_m, double radius_m) const;
-  // Whether one view sees all of the sphere.
-  bool sees_all_of(const Vec3& center_from_origin_m, double radius_m) const;
-
- private:
   struct Plane {
     Vec3 normal{0.0};  // unit, inwards
     double offset_m = 0.0;
   };
+
+ public:
+  // The planes that cut through a ball: of what lies in the ball no others need be asked.
+  class Part {
+   public:
+    // As SphereCulling::may_see says it, of a sphere within the ball.
+    bool may_see(const Vec3& center_from_origin_m, double radius_m) const;
+
+   private:
+    friend class SphereCulling;
+    std::vector<Plane> planes_;
+    std::vector<std::size_t> ends_;  // a view's planes end here; the first are the set's own
+  };
+
+  explicit SphereCulling(const ViewSet& set);
+  // From where the set's centers count, in the world.
+  const Vec3& origin_m() const { return origin_m_; }
+  bool may_see(const Vec3& center_from_origin_m, double radius_m) const;
+  // The same of all that a sphere sweeps on the way from one place to the other.
+  bool may_see_between(const Vec3& from_origin_m, const Vec3& to_m, double radius_m) const;
+  // Whether the ball may be seen, and if so the part of the planes that cuts it; part is made anew.
+  bool may_see(const Vec3& center_from_origin_m, double radius_m, Part& part) const;
+  // Narrows low_m and high_m to the x between which the center of a sphere may lie that is seen, on
+  // the line along x through a place. False: nowhere.
+  bool narrow(const Vec3& from_origin_m, double radius_m, double& low_m, double& high_m) const;
+
+ private:
   Vec3 origin_m_;
   std::vector<std::array<Plane, 5>> views_;
   std::optional<Plane> within_;

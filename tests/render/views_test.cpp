@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/intrinsics.hpp"
+#include "engine/core/random.hpp"
 
 namespace neritic::render {
 namespace {
@@ -86,6 +87,56 @@ TEST(Math, LookAtFacesItsTargetForAnyDirection) {
     const Pose pose = look_at(Vec3(0.0), target);
     EXPECT_LT(glm::length(pose.rotation * Vec3(0, 0, -1) - glm::normalize(target)), 1e-9);
   }
+}
+
+// Random spheres: what a part of the planes, a line along x and a way between two places say of
+// them is what all planes say of each.
+TEST(SphereCulling, ItsShortcutsAgreeWithAllItsPlanes) {
+  ViewSet set;
+  for (const double x : {-0.032, 0.032}) {
+    ViewDesc view;
+    view.world_from_view = {Vec3(5.0 + x, -3.0, 2.0), from_yaw_pitch_roll(0.7, -0.4, 0.2)};
+    view.tangents = {-1.0, 0.8 + x, -0.9, 1.1};
+    set.views.push_back(view);
+  }
+  set.within = HalfSpace{Vec3(0.0, -1.0, 0.0), -2.0};
+  const SphereCulling culling(set);
+  const MixedKey key(RandomKey{3});
+  std::uint64_t drawn = 0;
+  const auto within = [&](double low, double high) {
+    return low + (high - low) * random_uniform(key, drawn++);
+  };
+  const auto place = [&] { return Vec3(within(-6, 6), within(-6, 6), within(-6, 6)); };
+  SphereCulling::Part part;
+  int seen = 0, swept = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 ball_m = place();
+    const double ball_radius_m = within(0.0, 1.0), radius_m = ball_radius_m * within(0.0, 0.5);
+    EXPECT_EQ(culling.may_see(ball_m, ball_radius_m, part), culling.may_see(ball_m, ball_radius_m));
+    const Vec3 way = place();
+    const Vec3 in_it_m =
+        ball_m + (ball_radius_m - radius_m) * within(0.0, 1.0) * way / glm::length(way);
+    const bool may_see = culling.may_see(in_it_m, radius_m);
+    seen += may_see;
+    if (culling.may_see(ball_m, ball_radius_m, part)) {
+      EXPECT_EQ(part.may_see(in_it_m, radius_m), may_see);
+    } else {
+      EXPECT_FALSE(may_see);
+    }
+    double low_m = -6.0, high_m = 6.0;
+    const bool some = culling.narrow(ball_m, radius_m, low_m, high_m);
+    if (culling.may_see(ball_m, radius_m)) {
+      EXPECT_TRUE(some && ball_m.x >= low_m && ball_m.x <= high_m);
+    }
+    const Vec3 to_m = place();
+    const bool may_see_between = culling.may_see_between(ball_m, to_m, radius_m);
+    swept += may_see_between;
+    if (culling.may_see(glm::mix(ball_m, to_m, within(0.0, 1.0)), radius_m)) {
+      EXPECT_TRUE(may_see_between);
+    }
+  }
+  EXPECT_GT(seen, 500);
+  EXPECT_LT(swept, 15000);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // and its rest in the water, bubbles' rise and growth, the shaders' waves against those in double.
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <glm/gtc/packing.hpp>
 #include <set>
 
@@ -214,6 +215,32 @@ TEST(Snow, AViewGetsTheGrainsInItsSight) {
             glm::length(Vec3(seen.particles.back().position)));
 }
 
+// A field goes on from the cells that it found before, whichever view that was for.
+TEST(Snow, AFieldOfManyViewsPlacesWhatANewOneDoes) {
+  scene::Scene scene;
+  scene.water.emplace();
+  scene.water->snow = scene::Snow{.density_m3 = 300.0, .range_m = 2.0};
+  const scene::MotionSource motion(scene);
+  SnowField kept;
+  BubbleField bubbles;
+  for (int i = 0; i < 200; ++i) {
+    ViewDesc view;
+    // One swims and looks around, another lies near it, a third far off.
+    const Vec3 from_m = i % 3 == 0   ? Vec3(0.05 * i, -9.0, -0.02 * i)
+                        : i % 3 == 1 ? Vec3(1.0, -9.5, 0.5)
+                                     : Vec3(300.0, -2.0, 4.0);
+    view.world_from_view = {from_m, from_yaw_pitch_roll(0.05 * i, -0.2, 0.01 * i)};
+    const ViewSet views{.width = 600, .height = 600, .views = {view}};
+    const std::uint64_t seed = i < 150 ? 7 : 8;
+    const auto seen = view_particles(motion, kept, bubbles, seed, views, 0.1 * i).particles;
+    SnowField anew;
+    const auto made = view_particles(motion, anew, bubbles, seed, views, 0.1 * i).particles;
+    ASSERT_EQ(seen.size(), made.size());
+    ASSERT_GT(seen.size(), 100u);
+    EXPECT_EQ(std::memcmp(seen.data(), made.data(), seen.size() * sizeof seen[0]), 0) << i;
+  }
+}
+
 // A quarter at least stays; what stays has the light of all, and is the same whatever the time.
 TEST(Snow, SmallSpotsAreThinnedOutAndKeepTheirLight) {
   scene::Scene scene;
@@ -321,6 +348,37 @@ TEST(Bubbles, AreTheSameWhetherTheirBreathsAreKept) {
   kept.append(motion, source, 0, 10, 4e5, fewer);
   BubbleField().append(motion, source, 0, 10, 4e5, anew);
   EXPECT_EQ(fewer.size(), anew.size());
+}
+
+TEST(Bubbles, AViewGetsThoseInItsSight) {
+  scene::Scene scene;
+  scene.objects.resize(1);
+  scene.objects[0].mount.pose.position_m = Vec3(1.0, -30.0, 2.0);
+  const scene::MotionSource motion(scene);
+  scene::BubbleSource source;
+  source.object = 0;
+  source.median_radius_m = 2.5e-3;  // some break up
+  std::size_t in_sight = 0, left_out = 0;
+  for (int i = 0; i < 100; ++i) {
+    ViewDesc view;
+    view.world_from_view = {Vec3(1.0 + 0.02 * i, -30.5 + 0.1 * i, 2.0 + 0.03 * i),
+                            from_yaw_pitch_roll(0.4 * i, 0.1 * i, 0.3 * i)};
+    const ViewSet views{.width = 600, .height = 600, .views = {view}};
+    const SphereCulling sight(views);
+    std::vector<WorldParticle> all, seen;
+    BubbleField().append(motion, source, 0, 9, 50.0 + i, all);
+    BubbleField().append(motion, source, 0, 9, 50.0 + i, seen, &sight);
+    left_out += all.size() - seen.size();
+    std::set<std::pair<std::uint32_t, double>> of_seen;
+    for (const WorldParticle& b : seen) of_seen.emplace(b.seed, b.position_m.y);
+    for (const WorldParticle& b : all)
+      if (any_view_sees(views, b.position_m - views.origin_m(), b.radius_m + kSpotRoom_m)) {
+        ++in_sight;
+        EXPECT_TRUE(of_seen.contains({b.seed, b.position_m.y})) << i << ' ' << b.position_m.y;
+      }
+  }
+  EXPECT_GT(in_sight, 1000u);
+  EXPECT_GT(left_out, in_sight);
 }
 
 TEST(Bubbles, CarryTheGasThatTheSourceNamesAsTheyBreakUp) {
