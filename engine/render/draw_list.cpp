@@ -105,17 +105,8 @@ class DrawListBuilder {
     if (primitive.index_count == 0) return;
     // Instances that share vertices and winding follow each other, front to back, however many
     // draws they become: the order decides between equal depths.
-    const std::vector<Seen> unsorted = seen_of(g);
-    std::vector<std::uint32_t> order(unsorted.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::ranges::stable_sort(order, [&](std::uint32_t i, std::uint32_t k) {
-      const Seen &a = unsorted[i], &b = unsorted[k];
-      return std::tuple(a.deformed, a.mirrored, a.level, a.order_m) <
-             std::tuple(b.deformed, b.mirrored, b.level, b.order_m);
-    });
-    std::vector<Seen> seen;
-    seen.reserve(order.size());
-    for (const std::uint32_t k : order) seen.push_back(unsorted[k]);
+    const std::vector<Seen>& seen = sorted(seen_of(g));
+    if (seen.empty()) return;
     const GpuMaterial& material = gpu_scene_.materials()[primitive.material];
     const bool clusters = options_.clusters && !primitive.clusters.empty() &&
                           (material.blend || seen.size() <= kMostSplitInstances);
@@ -132,11 +123,28 @@ class DrawListBuilder {
     }
   }
 
-  std::vector<Seen> seen_of(std::uint32_t g) {
+  // Most groups have one instance in sight, or none.
+  const std::vector<Seen>& sorted(const std::vector<Seen>& unsorted) {
+    if (unsorted.size() < 2) return unsorted;
+    order_.resize(unsorted.size());
+    std::iota(order_.begin(), order_.end(), 0u);
+    std::ranges::stable_sort(order_, [&](std::uint32_t i, std::uint32_t k) {
+      const Seen &a = unsorted[i], &b = unsorted[k];
+      return std::tuple(a.deformed, a.mirrored, a.level, a.order_m) <
+             std::tuple(b.deformed, b.mirrored, b.level, b.order_m);
+    });
+    sorted_.clear();
+    for (const std::uint32_t k : order_) sorted_.push_back(unsorted[k]);
+    return sorted_;
+  }
+
+  // Until the next call.
+  const std::vector<Seen>& seen_of(std::uint32_t g) {
     const DrawGroup& group = gpu_scene_.groups()[g];
     const GpuPrimitive& primitive = group.primitive;
     const bool blend = gpu_scene_.materials()[primitive.material].blend;
-    std::vector<Seen> seen;
+    std::vector<Seen>& seen = seen_;
+    seen.clear();
     School school;
     for (const Appearance& a : group.appearances) {
       const std::uint16_t class_id = scene_.objects[a.object].class_id;
@@ -310,6 +318,8 @@ class DrawListBuilder {
     double near_m;
   };
   std::vector<Eye> eyes_;
+  std::vector<Seen> seen_, sorted_;  // of a group; kept to allocate nothing for the next
+  std::vector<std::uint32_t> order_;
   DrawList out_;
 };
 
