@@ -80,19 +80,18 @@ void Canvas::paint(const Mask& mask, const Color& color) {
   const float a = std::clamp(color.alpha, 0.0f, 1.0f);
   for (std::size_t v = 0; large && v < 256; ++v)
     for (std::size_t c = 0; c < 4; ++c) whole[c][v] = blended(static_cast<float>(v), color, a, c);
-  const std::uint32_t channels = image_.channels;
-  std::size_t i = 0;
-  for (int y = mask.box.top; y < mask.box.bottom; ++y)
-    for (int x = mask.box.left; x < mask.box.right; ++x, ++i) {
-      if (mask.coverage[i] == 0) continue;
-      if (!large || mask.coverage[i] < 255) {
-        blend(x, y, color, static_cast<float>(mask.coverage[i]) / 255.0f);
+  const PixelBox box = mask.box.intersect(bounds());
+  for (int y = box.top; y < box.bottom; ++y)
+    for (int x = box.left; x < box.right; ++x) {
+      const std::uint8_t coverage = mask.at(x, y);
+      if (coverage == 0) continue;
+      if (!large || coverage < 255) {
+        blend(x, y, color, static_cast<float>(coverage) / 255.0f);
         continue;
       }
-      if (x < 0 || y < 0 || x >= static_cast<int>(width()) || y >= static_cast<int>(height()))
-        continue;
       std::uint8_t* p = &image_.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
-      for (std::uint32_t c = 0; c < channels; ++c) p[c] = whole[c][p[c]];
+      for (std::uint32_t c = 0; c < 3; ++c) p[c] = whole[c][p[c]];
+      if (image_.channels == 4) p[3] = whole[3][p[3]];
     }
 }
 
