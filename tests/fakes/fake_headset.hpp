@@ -62,6 +62,11 @@ class FakeHeadset {
   void forgive(const std::string& words) { forgiven_ = words; }
   // A line for each frame that ended.
   std::string log() { return find<const char*()>("neritic_fake_xr_log")(); }
+  // The processor's time in the runtime's functions since this was first called, ms. Between calls.
+  double spent_ms() {
+    const auto spent_ns = find<std::int64_t()>("neritic_fake_xr_spent_ns");
+    return 1e-6 * static_cast<double>(spent_ns());
+  }
   // Seconds of simulated time.
   double now_s() {
     return static_cast<double>(find<std::int64_t()>("neritic_fake_xr_now")() - 10'000'000'000) *

@@ -55,6 +55,8 @@ NERITIC_EXPORT void neritic_fake_xr_reset() {
   rt.faults.clear();
   rt.made_vulkan.clear();
   rt.log.clear();
+  neritic::fakes::SpentTime::counted = false;
+  neritic::fakes::SpentTime::spent_ns = 0;
 }
 
 NERITIC_EXPORT const char* neritic_fake_xr_script(const char* lines) {
@@ -79,6 +81,11 @@ NERITIC_EXPORT const char* neritic_fake_xr_log() {
   static std::string keep;
   const std::lock_guard held(runtime().lock);
   return neritic::fakes::kept(keep, neritic::fakes::joined(runtime().log));
+}
+
+NERITIC_EXPORT std::int64_t neritic_fake_xr_spent_ns() {
+  neritic::fakes::SpentTime::counted = true;
+  return neritic::fakes::SpentTime::spent_ns;
 }
 
 NERITIC_EXPORT std::int64_t neritic_fake_xr_now() {

@@ -17,6 +17,9 @@ const char* neritic_fake_xr_do(const char* line);
 const char* neritic_fake_xr_faults();
 // One line for each frame that ended (README.md).
 const char* neritic_fake_xr_log();
+// Counts, from the first call on, the processor's time that the client's threads spend in the
+// runtime's functions. Gives what they have spent, nanoseconds. No call may be under way.
+std::int64_t neritic_fake_xr_spent_ns();
 // XrTime of the simulated now.
 std::int64_t neritic_fake_xr_now();
 }

@@ -144,6 +144,12 @@ void Call::check_structure(const void* structure, XrStructureType type,
   }
 }
 
+std::int64_t SpentTime::now_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
 void Call::check_pose(const XrPosef& pose) {
   const XrQuaternionf& q = pose.orientation;
   const double norm = std::sqrt(double{q.x} * q.x + q.y * q.y + q.z * q.z + q.w * q.w);

@@ -3,6 +3,7 @@
 // the lock and knows the function's name, which begins the sentence of each fault.
 #pragma once
 
+#include <atomic>
 #include <cmath>
 #include <condition_variable>
 #include <functional>
@@ -164,8 +165,25 @@ using Table = std::vector<Row>;
 template <auto kFunction>
 inline const char* function_name = "";
 
+// The processor's time of the client's threads within the runtime's functions, once a test wants to
+// know it: reading a thread's clock takes as long as a short function does.
+class SpentTime {
+ public:
+  SpentTime() : begun_ns_(counted ? now_ns() : 0) {}
+  ~SpentTime() {
+    if (counted) spent_ns += now_ns() - begun_ns_;
+  }
+  static inline std::atomic<bool> counted = false;
+  static inline std::atomic<std::int64_t> spent_ns = 0;
+
+ private:
+  static std::int64_t now_ns();  // of the calling thread
+  const std::int64_t begun_ns_;
+};
+
 template <auto kFunction, class... Arguments>
 XrResult XRAPI_CALL entry(Arguments... arguments) {
+  const SpentTime spent;
   try {
     Call call(runtime(), function_name<kFunction>);
     call.fail_by_script();

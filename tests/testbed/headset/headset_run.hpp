@@ -36,6 +36,7 @@ class HeadsetRun : public ::testing::Test {
     options.validation_sink = &vulkan_;
     headset->require(options);
     NERITIC_TRY(device, gpu::Device::create(options));
+    if (device_made_) device_made_();
     const Status status = dive_on(*headset, *device, scene, frames);
     for (const std::string& message : headset->validation_messages()) openxr_.push_back(message);
     return status;
@@ -43,6 +44,8 @@ class HeadsetRun : public ::testing::Test {
   // For a test that measures time.
   void without_layer() { layer_ = false; }
   void without_validation() { validation_ = false; }
+  // Called before anything is drawn.
+  void once_device_is_made(std::function<void()> then) { device_made_ = std::move(then); }
   void ask_for_rate(double hz) { refresh_hz_ = hz; }
   // In lock-step with the pictures; outlives the dive.
   void with(LivePhysics& physics) { physics_ = &physics; }
@@ -97,6 +100,7 @@ class HeadsetRun : public ::testing::Test {
   LivePhysics* physics_ = nullptr;
   std::optional<DiveHudOptions> hud_;
   SampleSource* source_ = nullptr;
+  std::function<void()> device_made_;
   double seconds_ = 0.0, refresh_hz_ = 0.0;
   bool layer_ = true, validation_ = true, governed_ = false;
 };
