@@ -77,9 +77,9 @@ INSTANTIATE_TEST_SUITE_P(
     Sonar, QualityTruth,
     ::testing::Values(QualityCase{scene::SonarKind::kImaging, 1, {6.0, 16.0, 2500}, 2},
                       QualityCase{scene::SonarKind::kProfiling, 1, {8.0, 24.0, 256}},
-                      QualityCase{scene::SonarKind::kEchoSounder, 6, {8.0, 24.0, 1024}},
+                      QualityCase{scene::SonarKind::kEchoSounder, 6, {8.0, 24.0, 512}},
                       QualityCase{scene::SonarKind::kSideScan, 2, {8.0, 16.0, 4000}},
-                      QualityCase{scene::SonarKind::kMechanical, 2, {32.0, 32.0, 4000}}),
+                      QualityCase{scene::SonarKind::kMechanical, 2, {32.0, 32.0, 2000}}),
     [](const auto& info) { return std::string(scene::name_of(info.param.kind)); });
 
 }  // namespace
