@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 #include <span>
 #include <tuple>
+
+#include "engine/core/parallel.hpp"
 
 namespace neritic::render {
 namespace {
@@ -30,6 +32,9 @@ struct Seen {
 // Indices that culling must save before an instance gets a draw of its own: a draw command costs
 // llvmpipe as much as 270 triangles outside the picture (cluster_culling.cpp).
 constexpr std::uint32_t kLeastSaved = 3 * 256;  // indices
+
+// Appearances that are looked at on one core: fewer take less time than a thread's start.
+constexpr std::size_t kLeastLookedAt = 2000;
 
 // Sort key of opaque draws: the least distance of their surface, or the centre's for those that lie
 // around the eye. By the centre alone the seabed under the eye would come last, or first.
@@ -105,7 +110,8 @@ class DrawListBuilder {
     if (primitive.index_count == 0) return;
     // Instances that share vertices and winding follow each other, front to back, however many
     // draws they become: the order decides between equal depths.
-    const std::vector<Seen>& seen = sorted(seen_of(g));
+    const std::span<const Looked> looked = look_at(g);
+    const std::span<const Seen* const> seen = sorted(looked);
     if (seen.empty()) return;
     const GpuMaterial& material = gpu_scene_.materials()[primitive.material];
     const bool clusters = options_.clusters && !primitive.clusters.empty() &&
@@ -113,40 +119,49 @@ class DrawListBuilder {
     for (std::size_t i = 0; i < seen.size();) {
       std::size_t end = i + 1;
       if (!material.blend)
-        while (end < seen.size() && seen[end].deformed == seen[i].deformed &&
-               seen[end].mirrored == seen[i].mirrored && seen[end].level == seen[i].level)
+        while (end < seen.size() && seen[end]->deformed == seen[i]->deformed &&
+               seen[end]->mirrored == seen[i]->mirrored && seen[end]->level == seen[i]->level)
           ++end;
-      const std::span<const Seen> alike(seen.data() + i, end - i);
-      add_alike(primitive, alike, clusters && seen[i].deformed == kNone && seen[i].level == 0,
+      const std::span<const Seen* const> alike(seen.data() + i, end - i);
+      add_alike(primitive, alike, clusters && seen[i]->deformed == kNone && seen[i]->level == 0,
                 material.blend ? out_.blended : out_.opaque);
       i = end;
     }
   }
 
-  // Most groups have one instance in sight, or none.
-  const std::vector<Seen>& sorted(const std::vector<Seen>& unsorted) {
-    if (unsorted.size() < 2) return unsorted;
-    order_.resize(unsorted.size());
-    std::iota(order_.begin(), order_.end(), 0u);
-    std::ranges::stable_sort(order_, [&](std::uint32_t i, std::uint32_t k) {
-      const Seen &a = unsorted[i], &b = unsorted[k];
-      return std::tuple(a.deformed, a.mirrored, a.level, a.order_m) <
-             std::tuple(b.deformed, b.mirrored, b.level, b.order_m);
+  // What is seen of a run of a group's appearances, and its heights (DrawList::lowest_m).
+  struct Looked {
+    std::vector<Seen> seen;
+    double lowest_m = 0.0, highest_m = 0.0;
+  };
+
+  // In the order of the appearances; until the next call.
+  std::span<const Looked> look_at(std::uint32_t g) {
+    const DrawGroup& group = gpu_scene_.groups()[g];
+    const std::span<const Appearance> all(group.appearances);
+    // What deforms tells how much of it is drawn, one after the other.
+    const std::size_t ranges =
+        group.primitive.deforms() ? 1 : ranges_of(all.size(), kLeastLookedAt);
+    if (looked_.size() < ranges) looked_.resize(ranges);
+    in_ranges(all.size(), ranges, [&](std::size_t range, std::size_t begin, std::size_t end) {
+      look_at(g, all.subspan(begin, end - begin), looked_[range]);
     });
-    sorted_.clear();
-    for (const std::uint32_t k : order_) sorted_.push_back(unsorted[k]);
-    return sorted_;
+    const std::span<const Looked> looked(looked_.data(), ranges);
+    for (const Looked& part : looked) {
+      out_.lowest_m = std::min(out_.lowest_m, part.lowest_m);
+      out_.highest_m = std::max(out_.highest_m, part.highest_m);
+    }
+    return looked;
   }
 
-  // Until the next call.
-  const std::vector<Seen>& seen_of(std::uint32_t g) {
-    const DrawGroup& group = gpu_scene_.groups()[g];
-    const GpuPrimitive& primitive = group.primitive;
+  void look_at(std::uint32_t g, std::span<const Appearance> appearances, Looked& looked) const {
+    const GpuPrimitive& primitive = gpu_scene_.groups()[g].primitive;
     const bool blend = gpu_scene_.materials()[primitive.material].blend;
-    std::vector<Seen>& seen = seen_;
-    seen.clear();
+    looked.seen.clear();
+    looked.lowest_m = std::numeric_limits<double>::infinity();
+    looked.highest_m = -std::numeric_limits<double>::infinity();
     School school;
-    for (const Appearance& a : group.appearances) {
+    for (const Appearance& a : appearances) {
       const std::uint16_t class_id = scene_.objects[a.object].class_id;
       if (class_id != 0 && class_id == options_.without_class) continue;
       if (!options_.objects.empty() && !options_.objects[a.object]) continue;
@@ -185,13 +200,25 @@ class DrawListBuilder {
         need = std::max(need,
                         level ? primitive.levels[level - 1].vertex_count : primitive.vertex_count);
       }
-      add_heights(bounded, m, center, job ? Vec3(own_radius_m) : primitive.half_m);
+      add_heights(looked, bounded, m, center, job ? Vec3(own_radius_m) : primitive.half_m);
       const bool hides =
           options_.hide_back_faces && primitive.closed && all_eyes_outside(views_, primitive, m);
-      seen.push_back(
+      looked.seen.push_back(
           {&a, m, deformed, level, glm::determinant(glm::dmat3(m)) < 0.0, hides, order_m, larger});
     }
-    return seen;
+  }
+
+  // By what they share, then by distance; those that are alike in all keep their order. Until the
+  // next call.
+  std::span<const Seen* const> sorted(std::span<const Looked> looked) {
+    keys_.clear();
+    for (const Looked& part : looked)
+      for (const Seen& s : part.seen)
+        keys_.push_back({s.deformed, s.level, s.mirrored, s.order_m, keys_.size(), &s});
+    std::ranges::sort(keys_, [](const Key& a, const Key& b) { return a.tie() < b.tie(); });
+    sorted_.clear();
+    for (const Key& key : keys_) sorted_.push_back(key.seen);
+    return sorted_;
   }
 
   // The copies of a school share this.
@@ -215,13 +242,14 @@ class DrawListBuilder {
            school.copy_from_primitive;
   }
 
-  // Widens the list's heights by a box round a centre; a ball's box turns like any other.
-  void add_heights(bool bounded, const Mat4& m, const Vec3& center, const Vec3& half_m) {
+  // Widens the heights by a box round a centre; a ball's box turns like any other.
+  static void add_heights(Looked& looked, bool bounded, const Mat4& m, const Vec3& center,
+                          const Vec3& half_m) {
     const double reach_m = bounded ? std::abs(m[0][1]) * half_m.x + std::abs(m[1][1]) * half_m.y +
                                          std::abs(m[2][1]) * half_m.z
                                    : std::numeric_limits<double>::infinity();
-    out_.lowest_m = std::min(out_.lowest_m, center.y - reach_m);
-    out_.highest_m = std::max(out_.highest_m, center.y + reach_m);
+    looked.lowest_m = std::min(looked.lowest_m, center.y - reach_m);
+    looked.highest_m = std::max(looked.highest_m, center.y + reach_m);
   }
 
   // The most pixels that a metre takes at the nearest part of a box round a centre, in any view.
@@ -238,11 +266,12 @@ class DrawListBuilder {
   }
 
   // Instances that may share a draw, in their order: those seen whole do with their neighbours.
-  void add_alike(const GpuPrimitive& primitive, std::span<const Seen> alike, bool clusters,
+  void add_alike(const GpuPrimitive& primitive, std::span<const Seen* const> alike, bool clusters,
                  std::vector<Draw>& draws) {
-    const double order_m = alike.front().order_m;  // the nearest's
+    const double order_m = alike.front()->order_m;  // the nearest's
     bool joins = false;
-    for (const Seen& s : alike) {
+    for (const Seen* each : alike) {
+      const Seen& s = *each;
       const auto first_range = static_cast<std::uint32_t>(out_.ranges.size());
       const bool part = clusters && !s.larger && add_visible_part(primitive, s);
       if (part && out_.ranges.size() == first_range) continue;  // nothing of it is seen
@@ -318,8 +347,18 @@ class DrawListBuilder {
     double near_m;
   };
   std::vector<Eye> eyes_;
-  std::vector<Seen> seen_, sorted_;  // of a group; kept to allocate nothing for the next
-  std::vector<std::uint32_t> order_;
+  struct Key {
+    std::uint32_t deformed, level;
+    bool mirrored;
+    double order_m;
+    std::size_t place;
+    const Seen* seen;
+    auto tie() const { return std::tie(deformed, mirrored, level, order_m, place); }
+  };
+  // Of a group; kept to allocate nothing for the next.
+  std::vector<Looked> looked_;
+  std::vector<Key> keys_;
+  std::vector<const Seen*> sorted_;
   DrawList out_;
 };
 

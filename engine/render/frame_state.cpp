@@ -118,7 +118,7 @@ FrameState evaluate_frame(const scene::MotionSource& source, const GpuScene& gpu
     const bool flock = scene.objects[i].flock.has_value();
     state.flock.push_back(flock ? scene::flock_copies(source, i, time_s) : std::vector<Mat4>());
     state.next_flock.push_back(flock && motion ? scene::flock_copies(source, i, next_time_s)
-                                               : state.flock.back());
+                                               : std::vector<Mat4>());
   }
   for (const scene::Lamp& lamp : scene.lamps)
     state.world_from_lamp.push_back(source.world_from(lamp.mount, time_s));

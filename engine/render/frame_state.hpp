@@ -35,7 +35,8 @@ struct FrameState {
   bool motion = false;
   std::vector<Pose> world_from_object, next_world_from_object;  // an object
   std::vector<scene::ModelPose> poses, next_poses;              // an object
-  // Object_from_copy of the objects that are schools; empty lists of others.
+  // Object_from_copy of the objects that are schools; empty lists of others, and without motion of
+  // the next instant.
   std::vector<std::vector<Mat4>> flock, next_flock;
   std::vector<PlacedLight> lights;    // of models
   std::vector<Pose> world_from_lamp;  // of the scene's

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/parallel.hpp"
 #include "engine/core/random.hpp"
 
 namespace neritic::scene {
 namespace {
 
+// Fish that are placed on one core: fewer take less time than a thread's start.
+constexpr std::size_t kLeastFish = 1000;
 // Velocities are differences over this time.
 constexpr double kStep_s = 0.04;
 // A fish's pitch, at most: schools keep level.
@@ -34,12 +37,13 @@ constexpr int kSwells = 4;
 
 struct School {
   const Flock& flock;
-  RandomKey key, stray_key;
+  MixedKey key, stray_key;
   Swell swells[kSwells];
 };
 
 School school_of(const Flock& flock) {
-  School school{flock, {flock.seed, 0x666c6f636b, 0}, {flock.seed, 0x7374726179, 0}, {}};
+  School school{
+      flock, MixedKey({flock.seed, 0x666c6f636b, 0}), MixedKey({flock.seed, 0x7374726179, 0}), {}};
   for (std::uint64_t i = 0; i < kSwells; ++i) {
     const auto draw = [&](std::uint64_t n) {
       return random_uniform({flock.seed, 0x7377656c6c, 0}, 8 * i + n) * 2.0 - 1.0;
@@ -143,6 +147,26 @@ Vec3 place_of(const School& school, const Instant& instant, const Fish& fish, do
   return dodged(at + calm * stray(fish, time_s), instant.avoid, avoid_m);
 }
 
+// World_from_copy of a fish.
+Mat4 copy_of(const School& school, const Instant& now, const Instant& soon, std::uint64_t index,
+             double time_s) {
+  const Fish fish = fish_of(school, index);
+  const Vec3 at = place_of(school, now, fish, time_s);
+  const Vec3 then = place_of(school, soon, fish, time_s + kStep_s);
+  Vec3 way = then - at;
+  const double run = std::hypot(way.x, way.z);
+  way.y = std::clamp(way.y, -kSteepest * run, kSteepest * run);
+  const double length = glm::length(way);
+  const Vec3 back = length > 1e-12 ? way / -length : Vec3(0, 0, 1);
+  const Vec3 level = glm::normalize(glm::cross(Vec3(0, 1, 0), back));
+  const double bank_rad =
+      kMostBank_rad * std::sin(0.7 * fish.pace_rad_s * time_s + fish.across_rad);
+  const Vec3 right = std::cos(bank_rad) * level + std::sin(bank_rad) * glm::cross(back, level);
+  const Vec3 up = glm::cross(back, right);
+  return Mat4(Vec4(right * fish.size, 0.0), Vec4(up * fish.size, 0.0), Vec4(back * fish.size, 0.0),
+              Vec4(at, 1.0));
+}
+
 }  // namespace
 
 std::vector<Mat4> flock_copies(const MotionSource& source, std::size_t object, double time_s) {
@@ -152,23 +176,11 @@ std::vector<Mat4> flock_copies(const MotionSource& source, std::size_t object, d
   const Instant soon = instant_of(source, object, time_s + kStep_s);
   const Mat4 object_from_world = glm::inverse(to_matrix(source.world_from_object(object, time_s)));
   std::vector<Mat4> out(flock.count);
-  for (std::uint64_t i = 0; i < flock.count; ++i) {
-    const Fish fish = fish_of(school, i);
-    const Vec3 at = place_of(school, now, fish, time_s);
-    const Vec3 then = place_of(school, soon, fish, time_s + kStep_s);
-    Vec3 way = then - at;
-    const double run = std::hypot(way.x, way.z);
-    way.y = std::clamp(way.y, -kSteepest * run, kSteepest * run);
-    const double length = glm::length(way);
-    const Vec3 back = length > 1e-12 ? way / -length : Vec3(0, 0, 1);
-    const Vec3 level = glm::normalize(glm::cross(Vec3(0, 1, 0), back));
-    const double bank_rad =
-        kMostBank_rad * std::sin(0.7 * fish.pace_rad_s * time_s + fish.across_rad);
-    const Vec3 right = std::cos(bank_rad) * level + std::sin(bank_rad) * glm::cross(back, level);
-    const Vec3 up = glm::cross(back, right);
-    out[i] = object_from_world * Mat4(Vec4(right * fish.size, 0.0), Vec4(up * fish.size, 0.0),
-                                      Vec4(back * fish.size, 0.0), Vec4(at, 1.0));
-  }
+  in_ranges(flock.count, ranges_of(flock.count, kLeastFish),
+            [&](std::size_t, std::size_t begin, std::size_t end) {
+              for (std::size_t i = begin; i < end; ++i)
+                out[i] = object_from_world * copy_of(school, now, soon, i, time_s);
+            });
   return out;
 }
 

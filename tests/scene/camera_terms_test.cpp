@@ -237,5 +237,19 @@ TEST(Flock, IsAFunctionOfTimeAlone) {
   EXPECT_EQ(scene.objects[1].copies, flock_copies(motion, 1, 0.0));
 }
 
+// Cores share the fish of a large school among them; those of a small one swim alike.
+TEST(Flock, AFishSwimsAlikeHoweverManyThereAre) {
+  const test::ScratchFolder scratch;
+  Scene scene = scene_of(scratch, kSchool);
+  const std::vector<Mat4> few = flock_copies(MotionSource(scene), 1, 3.0);
+  scene.objects[1].flock->count = 7001;
+  std::vector<Mat4> many = flock_copies(MotionSource(scene), 1, 3.0);
+  const std::vector<Mat4> last(many.end() - 3, many.end());
+  ASSERT_EQ(many.size(), 7001u);
+  many.resize(few.size());
+  EXPECT_EQ(many, few);
+  for (const Mat4& fish : last) EXPECT_EQ(fish[3][3], 1.0);  // Mat4() has another
+}
+
 }  // namespace
 }  // namespace neritic::scene

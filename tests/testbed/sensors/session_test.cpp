@@ -319,6 +319,15 @@ TEST_F(SessionTest, FiveThousandInstancesAreOneDraw) {
                               camera_views(session->scene(), session->scene().cameras[0]));
   ASSERT_EQ(draws.opaque.size(), 1u);
   EXPECT_GT(draws.opaque[0].instance_count, 1000u);
+  // Each once, front to back, whichever core looked at it.
+  std::set<std::uint32_t> labels;
+  double before_m = 0.0;
+  for (const shared::Instance& instance : draws.instances) {
+    EXPECT_TRUE(labels.insert(instance.label).second);
+    const double away_m = glm::length(Vec3(instance.row0.w, instance.row1.w, instance.row2.w));
+    EXPECT_GT(away_m, before_m - 1e-4);
+    before_m = away_m;
+  }
   NERITIC_ASSERT_OK(const FrameResult result, session->render(request));
   const auto& instances = result.cameras[0].eyes[0].instances.data;
   EXPECT_GT(std::set<std::uint16_t>(instances.begin(), instances.end()).size(), 1000u);
