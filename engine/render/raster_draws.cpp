@@ -88,19 +88,20 @@ Result<Renderer::PreparedDraws> Renderer::prepare(const GpuScene& scene, const D
                         : kind == GBufferKind::kShape ? RasterStage::kShape
                                                       : RasterStage::kSurface;
     if (geometry) stage = material.mask ? RasterStage::kGeometryMasked : RasterStage::kGeometry;
+    const bool places = stage == RasterStage::kGeometry;
+    if (places && !parts.normal && !parts.label && !larger && !list.clipped)
+      stage = RasterStage::kDepth;
     NERITIC_TRY(
         const gpu::Pipeline* pipeline,
-        raster_pipeline({stage, vk_topology(draw.primitive->topology),
-                         stage == RasterStage::kGeometry ? larger : motion,
+        raster_pipeline({stage, vk_topology(draw.primitive->topology), places ? larger : motion,
                          emissive && stage == RasterStage::kSurface, list.clipped, view_mask,
-                         stage == RasterStage::kGeometry ? 0u : material.flags, parts, light}));
+                         places ? 0u : material.flags, parts, light}));
     // A camera sees the sides that the material has. A sonar hears both sides of a sheet, but of a
     // solid with one side it needs no backs: see closed_surface.hpp.
     const bool both_sides = material.double_sided || (geometry && !draw.hides_back_faces);
     prepared.draws.push_back({draw,
                               std::span(list.ranges).subspan(draw.first_range, draw.range_count),
-                              pipeline, stage == RasterStage::kGeometry && larger,
-                              stage != RasterStage::kGeometry, both_sides, &material});
+                              pipeline, places && larger, !places, both_sides, &material});
   }
   return prepared;
 }

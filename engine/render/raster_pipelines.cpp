@@ -8,11 +8,18 @@
 namespace neritic::render {
 namespace {
 
-gpu::VertexStream position_stream() {
+// What depth alone needs.
+gpu::VertexStream place_stream() {
   return {sizeof(shared::VertexPosition),
-          {{0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(shared::VertexPosition, position)},
-           {1, VK_FORMAT_R16G16_SNORM, offsetof(shared::VertexPosition, normal)}},
+          {{0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(shared::VertexPosition, position)}},
           false};
+}
+
+gpu::VertexStream position_stream() {
+  gpu::VertexStream stream = place_stream();
+  stream.attributes.push_back(
+      {1, VK_FORMAT_R16G16_SNORM, offsetof(shared::VertexPosition, normal)});
+  return stream;
 }
 
 gpu::VertexStream surface_stream() {
@@ -24,13 +31,20 @@ gpu::VertexStream surface_stream() {
           false};
 }
 
+gpu::VertexStream placing_stream() {
+  return {
+      sizeof(shared::Instance),
+      {{shared::kInstanceRow0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(shared::Instance, row0)},
+       {shared::kInstanceRow1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(shared::Instance, row1)},
+       {shared::kInstanceRow2, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(shared::Instance, row2)}},
+      true};
+}
+
 gpu::VertexStream instance_stream() {
-  return {sizeof(shared::Instance),
-          {{shared::kInstanceRow0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(shared::Instance, row0)},
-           {shared::kInstanceRow1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(shared::Instance, row1)},
-           {shared::kInstanceRow2, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(shared::Instance, row2)},
-           {shared::kInstanceLabel, VK_FORMAT_R32G32_UINT, offsetof(shared::Instance, label)}},
-          true};
+  gpu::VertexStream stream = placing_stream();
+  stream.attributes.push_back(
+      {shared::kInstanceLabel, VK_FORMAT_R32G32_UINT, offsetof(shared::Instance, label)});
+  return stream;
 }
 
 // Bound in every pipeline of the full vertex stage, since it declares the inputs; what feeds it
@@ -68,17 +82,20 @@ Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
   const bool forward = stage == RasterStage::kForward;
   const bool shape = stage == RasterStage::kShape;
   const bool surface = shape || stage == RasterStage::kSurface;
-  const bool plain = stage == RasterStage::kGeometry;
+  const bool depth = stage == RasterStage::kDepth;
+  const bool plain = depth || stage == RasterStage::kGeometry;
   const bool tinted = forward && (material_flags & shared::kMaterialTransmissive) &&
                       device_.features().dualSrcBlend;
   gpu::GraphicsPipelineDesc desc;
-  desc.name = plain                                   ? "geometry"
+  desc.name = depth                                   ? "depth"
+              : plain                                 ? "geometry"
               : stage == RasterStage::kGeometryMasked ? "geometry masked"
               : shape                                 ? "gbuffer shape"
               : surface                               ? "gbuffer"
                                                       : "forward";
-  desc.vertex_code = vertex_code(plain, clipped, plain && motion);
-  desc.fragment_code = plain     ? shaders::kGeometryFrag
+  desc.vertex_code = depth ? shaders::kDepthVert : vertex_code(plain, clipped, plain && motion);
+  desc.fragment_code = depth     ? std::span<const std::uint32_t>()
+                       : plain   ? shaders::kGeometryFrag
                        : surface ? gbuffer_fragment(shape, emissive, motion)
                        : tinted  ? shaders::kForwardTintedFrag
                        : forward ? shaders::kForwardFrag
@@ -86,7 +103,10 @@ Result<const gpu::Pipeline*> Renderer::raster_pipeline(const RasterKey& key) {
   constexpr auto kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                  kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
   desc.layout.bindings = {{shared::kRasterViews, kUniform}};
-  desc.streams = {position_stream(), instance_stream()};
+  if (depth)
+    desc.streams = {place_stream(), placing_stream()};
+  else
+    desc.streams = {position_stream(), instance_stream()};
   desc.constants = {{shared::kSpecMultiview, view_mask != 0}};
   // In a geometry pass "motion" means that some things are drawn larger than they are.
   if (plain && motion) desc.streams.push_back(next_instance_stream(true));

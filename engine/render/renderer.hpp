@@ -282,7 +282,7 @@ class Renderer {
   Result<graph::BufferHandle> declare_shade_tiles(graph::FrameGraph& graph,
                                                   const std::string& prefix, const GBuffer& gbuffer,
                                                   const shared::ShadeTilesPush& push);
-  enum class RasterStage { kGeometry, kGeometryMasked, kShape, kSurface, kForward };
+  enum class RasterStage { kDepth, kGeometry, kGeometryMasked, kShape, kSurface, kForward };
   // The forward stage's shader is compiled with these: the terms of light, the number of lamps,
   // samples of inscatter. Other stages have none of them.
   struct ForwardLight {

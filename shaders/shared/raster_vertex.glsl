@@ -1,5 +1,5 @@
 // Shared by all vertex stages of the raster passes: the streams that place a vertex, the views, and its place.
-// NERITIC_CLIPPED: of views of one side of a plane.
+// NERITIC_CLIPPED: of views of one side of a plane. NERITIC_DEPTH: places alone, no normals and labels.
 #include "shared/octahedral.h"
 #include "shared/raster.h"
 #include "shared/affine.glsl"
@@ -7,15 +7,19 @@
 layout(constant_id = kSpecMultiview) const bool kMultiview = true;
 
 layout(location = 0) in vec3 position;
+#ifndef NERITIC_DEPTH
 layout(location = 1) in vec2 normal;
+#endif
 layout(location = kInstanceRow0) in vec4 row0;
 layout(location = kInstanceRow1) in vec4 row1;
 layout(location = kInstanceRow2) in vec4 row2;
 
 layout(set = 0, binding = kRasterViews, scalar) uniform Views { View views[kMaxViews]; };
 
+#ifndef NERITIC_DEPTH
 layout(location = 0) out vec3 out_normal;
 layout(location = 1) flat out uint out_label;
+#endif
 
 #ifdef NERITIC_CLIPPED
 out float gl_ClipDistance[1];
@@ -36,5 +40,7 @@ vec3 place_vertex() {
   return at;
 }
 
+#ifndef NERITIC_DEPTH
 // xyz: the normal of the placed vertex; w: see turned_normal.
 vec4 placed_normal() { return turned_normal(row0.xyz, row1.xyz, row2.xyz, octahedral_decode(normal)); }
+#endif
