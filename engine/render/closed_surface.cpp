@@ -38,6 +38,41 @@ std::vector<Corners> triangles_of(std::span<const std::uint32_t> place,
   return triangles;
 }
 
+// Leaves out both of each two triangles that are one another's backs: a sheet drawn as two sides.
+void drop_sheets(std::vector<Corners>& triangles) {
+  struct Side {
+    Corners sorted;
+    bool turned;  // against the corners' order
+    std::uint32_t triangle;
+    auto tie() const { return std::tie(sorted, turned, triangle); }
+  };
+  std::vector<Side> sides;
+  sides.reserve(triangles.size());
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    const Corners& t = triangles[i];
+    Side side{t, ((t[0] > t[1]) != (t[1] > t[2])) != (t[2] > t[0]), i};
+    std::ranges::sort(side.sorted);
+    sides.push_back(side);
+  }
+  std::ranges::sort(sides, [](const Side& a, const Side& b) { return a.tie() < b.tie(); });
+  std::vector<bool> sheet(triangles.size(), false);
+  for (std::size_t i = 0; i < sides.size();) {
+    std::size_t turned = i;
+    while (turned < sides.size() && sides[turned].sorted == sides[i].sorted &&
+           !sides[turned].turned)
+      ++turned;
+    std::size_t end = turned;
+    while (end < sides.size() && sides[end].sorted == sides[i].sorted) ++end;
+    for (std::size_t k = 0; k < std::min(turned - i, end - turned); ++k)
+      sheet[sides[i + k].triangle] = sheet[sides[turned + k].triangle] = true;
+    i = end;
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    if (!sheet[i]) triangles[kept++] = triangles[i];
+  triangles.resize(kept);
+}
+
 // An edge of a triangle, kept with its lower vertex.
 struct Edge {
   std::uint32_t high = 0, triangle = 0;
@@ -121,8 +156,9 @@ bool face_outwards(std::span<const Vec3f> positions, const std::vector<Corners>&
 bool is_closed(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices) {
   for (const Vec3f& p : positions)
     if (!is_finite(Vec3(p))) return false;
-  const std::vector<Corners> triangles = triangles_of(welded(positions), indices);
+  std::vector<Corners> triangles = triangles_of(welded(positions), indices);
   if (triangles.empty()) return false;
+  drop_sheets(triangles);
   Edges edges = edges_of(triangles, positions.size());
   Parts parts(triangles.size());
   return join_over_edges(edges, parts) && face_outwards(positions, triangles, parts);

@@ -101,8 +101,23 @@ TEST(ClosedSurface, TrianglesWithoutAreaChangeNothing) {
   EXPECT_TRUE(mesh.closed());
 }
 
-TEST(ClosedSurface, ASheetWithTwoSidesHasNoInside) {
-  const Solid mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2, 0, 2, 1}};
+// Where its back is seen, so is the front of its other side.
+TEST(ClosedSurface, ASheetWithTwoSidesIs) {
+  const std::vector<Vec3f> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  EXPECT_TRUE((Solid{corners, {0, 1, 2, 0, 2, 1}}.closed()));
+  EXPECT_TRUE((Solid{corners, {1, 2, 0, 1, 0, 2}}.closed()));
+  EXPECT_FALSE((Solid{corners, {0, 1, 2}}.closed()));
+  EXPECT_FALSE((Solid{corners, {0, 1, 2, 1, 2, 0}}.closed()));
+  EXPECT_FALSE((Solid{corners, {0, 1, 2, 0, 2, 1, 1, 2, 0}}.closed()));
+}
+
+TEST(ClosedSurface, AFinOfTwoSidesLeavesABoxClosed) {
+  Solid mesh = cube();
+  const auto root = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), {{1, 1, 1}, {1, 1, -1}, {2, 2, 0}});
+  mesh.indices.insert(mesh.indices.end(), {root, root + 1, root + 2, root + 2, root + 1, root});
+  EXPECT_TRUE(mesh.closed());
+  mesh.indices.resize(mesh.indices.size() - 3);
   EXPECT_FALSE(mesh.closed());
 }
 
