@@ -11,7 +11,8 @@
 namespace neritic::scene {
 namespace {
 
-constexpr std::size_t kLeastTriangles = 32, kCoarsest = 6;
+// Eight triangles are made no coarser: fewer are no longer as long, wide and high as a solid.
+constexpr std::size_t kLeastTriangles = 32, kCoarsest = 8;
 // A level is kept if it has at most this share of the triangles of the one before.
 constexpr double kLeastGain = 0.75;
 // A level that errs by more than this share of the mesh's size shows no mesh any more.
