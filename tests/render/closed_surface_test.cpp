@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <vector>
+
+#include "engine/scene/gltf_loader.hpp"
+#include "tests/support/support.hpp"
 
 namespace neritic::render {
 namespace {
@@ -128,6 +132,15 @@ TEST(ClosedSurface, NothingAndWhatIsNotFiniteAreNot) {
   EXPECT_FALSE(mesh.closed());
   mesh.positions[3].y = std::numeric_limits<float>::infinity();
   EXPECT_FALSE(mesh.closed());
+}
+
+// What throws shadows by the thousand, and is heard by the thousand, is drawn by its front alone.
+TEST(ClosedSurface, TheSardineIs) {
+  const auto model = scene::load_gltf(test::source_dir() / "assets/models/school_fish.glb");
+  ASSERT_TRUE(model.ok());
+  const auto mesh = std::ranges::find(model->meshes, "sardine", &scene::Mesh::name);
+  ASSERT_NE(mesh, model->meshes.end());
+  for (const scene::Primitive& p : mesh->primitives) EXPECT_TRUE(is_closed(p.positions, p.indices));
 }
 
 }  // namespace

@@ -8,7 +8,9 @@
 #include <map>
 #include <set>
 
+#include "engine/scene/gltf_loader.hpp"
 #include "engine/scene/shapes.hpp"
+#include "tests/support/support.hpp"
 
 namespace neritic::scene {
 namespace {
@@ -135,6 +137,28 @@ TEST(MeshLevels, AreTheSameEachTime) {
   for (std::size_t i = 0; i < first.size(); ++i) {
     EXPECT_EQ(first[i].indices, second[i].indices);
     EXPECT_EQ(first[i].error_m, second[i].error_m);
+  }
+}
+
+// Drawn by the thousand: each version stays a fish, not a sliver.
+TEST(MeshLevels, TheSardineKeepsItsLengthHeightAndBreadth) {
+  const auto model = load_gltf(test::source_dir() / "assets/models/school_fish.glb");
+  ASSERT_TRUE(model.ok());
+  const auto mesh = std::ranges::find(model->meshes, "sardine", &Mesh::name);
+  ASSERT_NE(mesh, model->meshes.end());
+  ASSERT_EQ(mesh->primitives.size(), 1u);
+  const Primitive& sardine = mesh->primitives[0];
+  const auto levels = mesh_levels(sardine);
+  ASSERT_GE(levels.size(), 2u);
+  const Vec3 whole_m = sardine.bounds.max - sardine.bounds.min;
+  for (const MeshLevel& level : levels) {
+    Bounds box;
+    for (std::size_t i = 0; i < level.indices.size(); ++i)
+      box.add(Vec3(sardine.positions[level.indices[i]]));
+    const Vec3 size_m = box.max - box.min;
+    EXPECT_GT(size_m.x, 0.6 * whole_m.x) << level.indices.size() / 3;
+    EXPECT_GT(size_m.y, 0.6 * whole_m.y) << level.indices.size() / 3;
+    EXPECT_GT(size_m.z, 0.8 * whole_m.z) << level.indices.size() / 3;
   }
 }
 
