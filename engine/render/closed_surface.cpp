@@ -118,21 +118,30 @@ class Parts {
   std::vector<std::uint32_t> parent_;
 };
 
-// Joins the two triangles of each edge; false where an edge has not just one either way.
-bool join_over_edges(Edges& edges, Parts& parts) {
+// kOpen: an edge is passed more often one way than the other. kCrowded: one is passed more than
+// once either way.
+enum class Skin { kOpen, kCrowded, kWhole };
+
+// Joins the two triangles of each edge.
+Skin join_over_edges(Edges& edges, Parts& parts) {
+  bool crowded = false;
   for (std::size_t v = 0; v + 1 < edges.first.size(); ++v) {
     const std::size_t end = edges.first[v + 1];
     std::sort(edges.all.begin() + static_cast<std::ptrdiff_t>(edges.first[v]),
               edges.all.begin() + static_cast<std::ptrdiff_t>(end));
-    for (std::size_t e = edges.first[v]; e < end; e += 2) {
-      if (e + 1 == end) return false;
-      const Edge &one = edges.all[e], &other = edges.all[e + 1];
-      const bool third = e + 2 < end && edges.all[e + 2].high == one.high;
-      if (one.high != other.high || one.rising == other.rising || third) return false;
-      parts.join(one.triangle, other.triangle);
+    for (std::size_t e = edges.first[v]; e < end;) {
+      const std::uint32_t high = edges.all[e].high;
+      std::size_t rising = e;
+      while (rising < end && edges.all[rising].high == high && !edges.all[rising].rising) ++rising;
+      std::size_t next = rising;
+      while (next < end && edges.all[next].high == high) ++next;
+      if (rising - e != next - rising) return Skin::kOpen;
+      crowded |= rising - e > 1;
+      parts.join(edges.all[e].triangle, edges.all[rising].triangle);
+      e = next;
     }
   }
-  return true;
+  return crowded ? Skin::kCrowded : Skin::kWhole;
 }
 
 bool face_outwards(std::span<const Vec3f> positions, const std::vector<Corners>& triangles,
@@ -158,10 +167,19 @@ bool is_closed(std::span<const Vec3f> positions, std::span<const std::uint32_t> 
     if (!is_finite(Vec3(p))) return false;
   std::vector<Corners> triangles = triangles_of(welded(positions), indices);
   if (triangles.empty()) return false;
+  bool open = false;
+  const auto encloses = [&] {
+    Edges edges = edges_of(triangles, positions.size());
+    Parts parts(triangles.size());
+    const Skin skin = join_over_edges(edges, parts);
+    open = skin == Skin::kOpen;
+    return skin == Skin::kWhole && face_outwards(positions, triangles, parts);
+  };
+  if (encloses()) return true;
+  // Without its sheets an open mesh is no less open.
+  if (open) return false;
   drop_sheets(triangles);
-  Edges edges = edges_of(triangles, positions.size());
-  Parts parts(triangles.size());
-  return join_over_edges(edges, parts) && face_outwards(positions, triangles, parts);
+  return encloses();
 }
 
 }  // namespace neritic::render
