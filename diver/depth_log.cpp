@@ -12,10 +12,10 @@
 namespace neritic::diver {
 namespace {
 
-constexpr std::size_t kMostSamples = 10'000'000;
+constexpr std::size_t kMostLogSamples = 10'000'000;
 constexpr std::size_t kMostVehicles = 8;  // that are named
 constexpr double kMostAbove_m = 1.0;      // the surface: waves, and sensors that drift
-constexpr double kMostTime = 1e12, kNoTime = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMostTime = 1e12, kUntimed = std::numeric_limits<double>::quiet_NaN();
 constexpr double kAtSurface_m = 0.5;  // a log that comes as near has been at the surface
 
 // A field's text for one line: other bytes become '?'.
@@ -94,7 +94,7 @@ class LogReader {
       vehicles_.push_back(shown(whose));
     if (!vehicle_.empty() && whose != vehicle_) return {};
     DepthSample sample;
-    sample.time_s = number_of(cells[time_], separators_).value_or(kNoTime);
+    sample.time_s = number_of(cells[time_], separators_).value_or(kUntimed);
     if (!(std::abs(sample.time_s) <= kMostTime))
       return refusal(fmt::format("{}: line {}", name_, line_),
                      fmt::format("time '{}'", shown(cells[time_])), "a number");
@@ -119,8 +119,8 @@ class LogReader {
                      upwards_ ? "up to 1 with --depths-up, where depths are negative"
                               : "from -1; --depths-up reads depths that are negative");
     if (gas_ < width_) NERITIC_TRY_STATUS(read_gas(cells[gas_], sample));
-    if (log_.samples.size() == kMostSamples)
-      return refusal(name_, "more samples", fmt::format("up to {}", kMostSamples));
+    if (log_.samples.size() == kMostLogSamples)
+      return refusal(name_, "more samples", fmt::format("up to {}", kMostLogSamples));
     NERITIC_TRY_STATUS(add(sample, cells[depth_]));
     return {};
   }

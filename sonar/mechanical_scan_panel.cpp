@@ -14,7 +14,7 @@ using namespace draw2d;
 
 namespace {
 
-constexpr double kGamma = 0.6, kTop = 96, kBottom = 64, kLeft = 84, kRight = 110;
+constexpr double kGamma = 0.6, kScanTop = 96, kScanBottom = 64, kScanLeft = 84, kScanRight = 110;
 
 void draw_track(Canvas& canvas, const PlotBox& box, const MechanicalScan& scan,
                 const ScanMosaic& mosaic, double px_per_m, double unit) {
@@ -38,14 +38,14 @@ ImageU8 draw_mosaic(const MechanicalScan& scan, const ScanMosaic& mosaic, const 
                     std::uint32_t height_px) {
   const double unit = height_px / 900.0;
   const double columns = std::max(1u, mosaic.columns), rows = std::max(1u, mosaic.rows);
-  const double room = height_px - (kTop + kBottom) * unit;
+  const double room = height_px - (kScanTop + kScanBottom) * unit;
   const double px_per_cell = std::min(room / rows, 2.0 * room / columns);
   const double wide = std::max(1.0, std::round(columns * px_per_cell)),
                high = std::max(1.0, std::round(rows * px_per_cell));
   Canvas canvas(static_cast<std::uint32_t>(
-                    std::lround(std::max(wide, 420.0 * unit) + (kLeft + kRight) * unit)),
+                    std::lround(std::max(wide, 420.0 * unit) + (kScanLeft + kScanRight) * unit)),
                 height_px, kPlotBackground);
-  const double left = std::round(kLeft * unit), top = std::round(kTop * unit);
+  const double left = std::round(kScanLeft * unit), top = std::round(kScanTop * unit);
   const PlotBox box{left, top, left + wide, top + high};
   const double full_scale = percentile_of_heard(mosaic.intensity, 0.995);
   const bool levels = scan.options().levels;

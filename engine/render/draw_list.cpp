@@ -208,6 +208,16 @@ class DrawListBuilder {
     }
   }
 
+  // By which instances follow each other.
+  struct Key {
+    std::uint32_t deformed, level;
+    bool mirrored;
+    double order_m;
+    std::size_t place;
+    const Seen* seen;
+    auto tie() const { return std::tie(deformed, mirrored, level, order_m, place); }
+  };
+
   // By what they share, then by distance; those that are alike in all keep their order. Until the
   // next call.
   std::span<const Seen* const> sorted(std::span<const Looked> looked) {
@@ -347,14 +357,6 @@ class DrawListBuilder {
     double near_m;
   };
   std::vector<Eye> eyes_;
-  struct Key {
-    std::uint32_t deformed, level;
-    bool mirrored;
-    double order_m;
-    std::size_t place;
-    const Seen* seen;
-    auto tie() const { return std::tie(deformed, mirrored, level, order_m, place); }
-  };
   // Of a group; kept to allocate nothing for the next.
   std::vector<Looked> looked_;
   std::vector<Key> keys_;

@@ -115,7 +115,7 @@ std::vector<std::uint32_t> add_vertices(const Heightfield& field, double texture
   return vertex_of;
 }
 
-void add_triangle(Primitive& primitive, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+void add_known_triangle(Primitive& primitive, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   if (a == kNoVertex || b == kNoVertex || c == kNoVertex) return;
   primitive.indices.insert(primitive.indices.end(), {a, b, c});
 }
@@ -155,11 +155,11 @@ Model make_terrain(const Heightfield& field, double texture_m) {
                           se = vertex_of[at + field.columns + 1];
       // The diagonal runs south-west to north-east; where one of its ends is missing, the other.
       if (sw != kNoVertex && ne != kNoVertex) {
-        add_triangle(primitive, nw, sw, ne);
-        add_triangle(primitive, ne, sw, se);
+        add_known_triangle(primitive, nw, sw, ne);
+        add_known_triangle(primitive, ne, sw, se);
       } else {
-        add_triangle(primitive, nw, sw, se);
-        add_triangle(primitive, nw, se, ne);
+        add_known_triangle(primitive, nw, sw, se);
+        add_known_triangle(primitive, nw, se, ne);
       }
     }
   Model model = model_of_primitive(std::move(primitive), "terrain");

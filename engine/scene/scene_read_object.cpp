@@ -11,7 +11,7 @@
 namespace neritic::scene {
 namespace {
 
-constexpr Interval kSize{0, 1e6, true, false, "metres"};
+constexpr Interval kSizes{0, 1e6, true, false, "metres"};
 constexpr Interval kFraction{0, 1};
 
 struct ShapeKeys {
@@ -59,8 +59,8 @@ void read_look(TableReader& reader, ModelRequest& request, double default_textur
   look.place_color_texture = reader.place("color_texture");
   look.place_normal_texture = reader.place("normal_texture");
   look.place_detail_texture = reader.place("detail_texture");
-  look.detail_m = reader.number("detail_m", look.detail_m, kSize);
-  look.texture_m = reader.number("texture_m", default_texture_m, kSize);
+  look.detail_m = reader.number("detail_m", look.detail_m, kSizes);
+  look.texture_m = reader.number("texture_m", default_texture_m, kSizes);
 }
 
 void read_shape(TableReader& reader, ModelRequest& request) {
@@ -69,11 +69,11 @@ void read_shape(TableReader& reader, ModelRequest& request) {
   for (const ShapeKeys& shape : kShapes)
     if (shape.shape == request.shape)
       refuse_other_keys(reader, "a " + request.shape, shape.keys, kLookKeys);
-  request.radius_m = reader.number("radius_m", 0.5, kSize);
-  request.height_m = reader.number("height_m", 1.0, kSize);
+  request.radius_m = reader.number("radius_m", 0.5, kSizes);
+  request.height_m = reader.number("height_m", 1.0, kSizes);
   const bool flat = request.shape == "plane";
   const std::vector<double> size =
-      reader.numbers("size_m", {flat ? std::size_t{2} : std::size_t{3}}, kSize);
+      reader.numbers("size_m", {flat ? std::size_t{2} : std::size_t{3}}, kSizes);
   if (size.size() == 2) request.size_m = {size[0], 0.0, size[1]};
   if (size.size() == 3) request.size_m = {size[0], size[1], size[2]};
   request.segments = static_cast<int>(reader.whole("segments", 48, 3, 4096));
@@ -85,7 +85,7 @@ void read_terrain(TableReader& reader, ModelRequest& request) {
   request.kind = ModelRequest::Kind::kTerrain;
   request.file = reader.file("terrain");
   refuse_other_keys(reader, "a terrain", kTerrainKeys, kLookKeys);
-  request.heights.cell_m = reader.number("cell_m", 0.0, kSize);
+  request.heights.cell_m = reader.number("cell_m", 0.0, kSizes);
   request.heights.scale = reader.number("height_scale", 1.0, {-1e6, 1e6});
   request.heights.offset_m = reader.number("height_offset_m", 0.0, kAnyMetres);
   read_look(reader, request, 2.5);

@@ -1,4 +1,4 @@
-// Unity builds compile up to sixteen files of a folder as one, so that the anonymous namespaces of
+// Unity builds compile up to sixty files of a folder as one, so that the anonymous namespaces of
 // all files of a folder must share no names. Which files meet changes with every new file.
 #include <gtest/gtest.h>
 
@@ -14,23 +14,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The name that a line of an anonymous namespace declares, and what must be equal for two to agree:
+// A name that a line of an anonymous namespace declares, and what must be equal for two to agree:
 // the whole line of an alias, nothing for types and constants.
 struct Declared {
   std::string name;
   std::string agrees;
 };
 
-std::optional<Declared> declared_in(const std::string& line) {
+std::vector<Declared> declared_in(const std::string& line) {
   static const std::regex alias(R"(^using (\w+) = (.*))");
   static const std::regex type(R"(^(?:struct|class|enum class|enum|union) (\w+)[ {:].*)");
   static const std::regex constant(
       R"(^(?:inline |static )?(?:constexpr|const) [\w:<>, *]*?(\w+)(?:\[[^\]]*\])*(?: =| ?\{).*)");
   std::smatch found;
-  if (std::regex_match(line, found, alias)) return Declared{found[1], found[2]};
-  if (std::regex_match(line, found, type) && line.back() != ';') return Declared{found[1], ""};
-  if (std::regex_match(line, found, constant)) return Declared{found[1], ""};
-  return {};
+  if (std::regex_match(line, found, alias)) return {{found[1], found[2]}};
+  if (std::regex_match(line, found, type) && line.back() != ';') return {{found[1], ""}};
+  if (!std::regex_match(line, found, constant)) return {};
+  std::vector<Declared> all{{found[1], ""}};
+  static const std::regex further(R"(, (\w+) = )");
+  for (std::sregex_iterator next(line.begin(), line.end(), further), end; next != end; ++next)
+    all.push_back({(*next)[1], ""});
+  return all;
 }
 
 // Types, aliases and constants of the anonymous namespaces of a file, by name.
@@ -43,7 +47,7 @@ std::map<std::string, std::string> names_of(const std::string& text) {
     if (line == "}  // namespace") inside = false;
     const bool alias_anywhere = line.starts_with("using ");
     if (!inside && !alias_anywhere) continue;
-    if (const auto declared = declared_in(line)) names[declared->name] = declared->agrees;
+    for (const Declared& declared : declared_in(line)) names[declared.name] = declared.agrees;
   }
   return names;
 }
@@ -81,6 +85,7 @@ TEST(UnityNames, FindsConstantsTypesAndAliasesThatDiffer) {
     return clashes({{"a.cpp", head + one + "\n" + end}, {"b.cpp", head + other + "\n" + end}});
   };
   EXPECT_EQ(of("constexpr double kMost = 3;", "const std::size_t kMost{4};").size(), 1u);
+  EXPECT_EQ(of("constexpr int kOne = 1, kTwo = 2;", "constexpr int kTwo = 3;").size(), 1u);
   EXPECT_EQ(of("struct Run {", "struct Run : Base {").size(), 1u);
   EXPECT_EQ(of("using Names = A;", "using Names = B;").size(), 1u);
   EXPECT_TRUE(of("using Json = A;", "using Json = A;").empty());

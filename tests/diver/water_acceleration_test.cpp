@@ -7,7 +7,7 @@
 namespace neritic::diver {
 namespace {
 
-constexpr double kStep_s = 1.0 / 240.0;
+constexpr double kMoved_s = 1.0 / 240.0;
 
 // Weight and buoyancy of every segment, and their centres, alike: what floats in itself.
 Body floating() {
@@ -28,7 +28,7 @@ TEST(DiverWaterAcceleration, WhoFloatsMovesWithWaterThatGathersSpeed) {
     LimbState limbs;
     limbs.rotation = swinging(index, 0.3);
     for (int i = 0; i < 2400; ++i)
-      move_root(body, root, limbs, limbs, {}, {a * (i * kStep_s), a, a}, kStep_s);
+      move_root(body, root, limbs, limbs, {}, {a * (i * kMoved_s), a, a}, kMoved_s);
     EXPECT_LT(glm::length(root.attitude * root.velocity.linear() - 10.0 * a), 1e-8) << index;
     EXPECT_LT(glm::length(root.velocity.angular()), 1e-8) << index;
     EXPECT_LT(1.0 - std::abs(glm::dot(root.attitude, attitude)), 1e-9) << index;
@@ -46,10 +46,10 @@ TEST(DiverWaterAcceleration, ASwimmerWhoFloatsSwimsAsInStillWater) {
   limbs.rotation = swinging(3, 0.0);
   for (int i = 0; i < 480; ++i) {
     const LimbState before = limbs;
-    follow_limbs(limbs, swinging(3, i * kStep_s), kStep_s);
-    const LimbWork a_work = move_root(body, still, before, limbs, {}, Vec3(0.0), kStep_s);
+    follow_limbs(limbs, swinging(3, i * kMoved_s), kMoved_s);
+    const LimbWork a_work = move_root(body, still, before, limbs, {}, Vec3(0.0), kMoved_s);
     const LimbWork b_work =
-        move_root(body, carried, before, limbs, {}, {a * (i * kStep_s), a, a}, kStep_s);
+        move_root(body, carried, before, limbs, {}, {a * (i * kMoved_s), a, a}, kMoved_s);
     ASSERT_NEAR(a_work.power_w, b_work.power_w, 1e-6 * (1.0 + std::abs(a_work.power_w)));
   }
   EXPECT_LT(glm::length(carried.position_ned_m - still.position_ned_m - 2.0 * a), 1e-8);
@@ -83,7 +83,7 @@ TEST(DiverWaterAcceleration, WhatIsHeavierTakesItsShare) {
     const Vec3 a(0.4, -0.3, 0.0);
     const LimbState limbs;
     for (int i = 0; i < 480; ++i)
-      move_root(body, root, limbs, limbs, {}, {a * (i * kStep_s), a, a}, kStep_s);
+      move_root(body, root, limbs, limbs, {}, {a * (i * kMoved_s), a, a}, kMoved_s);
     const Vec3 velocity = root.attitude * root.velocity.linear();
     EXPECT_LT(glm::length(Vec3(velocity.x, velocity.y, 0.0) - 6.0 / (1.0 + 2.0 * density) * a),
               1e-8)
@@ -154,7 +154,7 @@ TEST(DiverWaterAcceleration, ADiverIsCarriedByASwell) {
   };
   // The water goes to and fro by 2 * 0.5 / w = 1.27 m; across it a diver of about its density goes
   // nearly all of that.
-  const double carried_m = swell(true, kStep_s), dragged_m = swell(false, kStep_s);
+  const double carried_m = swell(true, kMoved_s), dragged_m = swell(false, kMoved_s);
   EXPECT_NEAR(carried_m, 1.27, 0.07);
   EXPECT_LT(dragged_m, carried_m - 0.05);
   EXPECT_NEAR(swell(true, 0.05), carried_m, 0.02);
@@ -163,12 +163,12 @@ TEST(DiverWaterAcceleration, ADiverIsCarriedByASwell) {
   good.water_acceleration_ned_m_s2 = {0.2, 0.0, 0.0};
   const HumanState start = start_at(body, {0.0, 0.0, 12.0}, {1.0, 0.0, 0.0, 0.0});
   for (const double wrong : {static_cast<double>(NAN), static_cast<double>(INFINITY), -1e3}) {
-    const HumanState state = step(body, start, good, kStep_s);
+    const HumanState state = step(body, start, good, kMoved_s);
     HumanInputs bad = good;
     bad.water_acceleration_ned_m_s2.z = bad.current_change_ned_m_s2.y = wrong;
-    const HumanState after = step(body, state, bad, kStep_s);
+    const HumanState after = step(body, state, bad, kMoved_s);
     EXPECT_EQ(after.refused_inputs, 2u);
-    EXPECT_EQ(after.root.velocity, step(body, state, good, kStep_s).root.velocity);
+    EXPECT_EQ(after.root.velocity, step(body, state, good, kMoved_s).root.velocity);
   }
 }
 

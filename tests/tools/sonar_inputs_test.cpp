@@ -12,25 +12,25 @@ namespace {
 
 using test::Words;
 
-constexpr std::uint32_t kWidth = 64, kHeight = 48;
+constexpr std::uint32_t kColumns = 64, kRows = 48;
 constexpr double kFocal = 60.0, kBaseline_m = 0.12;
 
 // A floor 2 m below a level camera, and its normals in the camera's axes of OpenCV.
 class SonarInputs : public ::testing::Test {
  protected:
   void SetUp() override {
-    for (std::uint32_t v = 0; v < kHeight; ++v)
-      for (std::uint32_t u = 0; u < kWidth; ++u) {
-        const double down = (v + 0.5 - kHeight / 2.0) / kFocal;
+    for (std::uint32_t v = 0; v < kRows; ++v)
+      for (std::uint32_t u = 0; u < kColumns; ++u) {
+        const double down = (v + 0.5 - kRows / 2.0) / kFocal;
         // On 1/256 m, which 16 bits hold as well as floats.
         depth_.push_back(down > 0.05 ? std::round(512.0 / down) / 256.0 : 0.0);
       }
     std::vector<float> depth(depth_.begin(), depth_.end()), normals;
     for (std::size_t i = 0; i < depth_.size(); ++i)
       normals.insert(normals.end(), {0.0f, -1.0f, 0.0f});
-    const std::size_t shape[] = {kHeight, kWidth}, vectors[] = {kHeight, kWidth, 3};
-    EXPECT_TRUE(write_npy(at("depth.npy"), depth, {kHeight, kWidth}).ok());
-    EXPECT_TRUE(write_npy(at("normals.npy"), normals, {kHeight, kWidth, 3}).ok());
+    const std::size_t shape[] = {kRows, kColumns}, vectors[] = {kRows, kColumns, 3};
+    EXPECT_TRUE(write_npy(at("depth.npy"), depth, {kRows, kColumns}).ok());
+    EXPECT_TRUE(write_npy(at("normals.npy"), normals, {kRows, kColumns, 3}).ok());
     EXPECT_TRUE(
         write_npz(at("z.npz"), NpyType::kFloat32, shape, std::as_bytes(std::span(depth))).ok());
     EXPECT_TRUE(
@@ -43,7 +43,7 @@ class SonarInputs : public ::testing::Test {
   }
   // Big-endian, as .pgm has them.
   std::string pgm16() const {
-    std::string out = fmt::format("P5\n# the floor\n{} {}\n65535\n", kWidth, kHeight);
+    std::string out = fmt::format("P5\n# the floor\n{} {}\n65535\n", kColumns, kRows);
     for (const double depth : depth_) {
       const auto code = static_cast<std::uint32_t>(depth * 256.0);
       out += {static_cast<char>(code >> 8), static_cast<char>(code & 0xff)};
@@ -52,10 +52,10 @@ class SonarInputs : public ::testing::Test {
   }
   // Rows from the bottom, little-endian.
   std::string pfm(const std::vector<double>& values) const {
-    std::string out = fmt::format("Pf\n{} {}\n-1.0\n", kWidth, kHeight);
-    for (std::uint32_t row = kHeight; row-- > 0;)
-      for (std::uint32_t u = 0; u < kWidth; ++u) {
-        const auto value = static_cast<float>(values[row * kWidth + u]);
+    std::string out = fmt::format("Pf\n{} {}\n-1.0\n", kColumns, kRows);
+    for (std::uint32_t row = kRows; row-- > 0;)
+      for (std::uint32_t u = 0; u < kColumns; ++u) {
+        const auto value = static_cast<float>(values[row * kColumns + u]);
         out.append(reinterpret_cast<const char*>(&value), 4);
       }
     return out;
@@ -121,7 +121,7 @@ TEST_F(SonarInputs, NormalsInWorldAxesAreTurnedByTheCamerasPose) {
   const auto wanted = image(Words{"--depth", at("depth.npy")} + normals_ + pinhole_);
   std::vector<float> normals;
   for (std::size_t i = 0; i < depth_.size(); ++i) normals.insert(normals.end(), {0.0f, 0.0f, 1.0f});
-  ASSERT_TRUE(write_npy(at("world.npy"), normals, {kHeight, kWidth, 3}).ok());
+  ASSERT_TRUE(write_npy(at("world.npy"), normals, {kRows, kColumns, 3}).ok());
   // In OpenCV's camera axes: right is -y, down is -z, forward is x.
   write("pose.json",
         R"({"camera_to_world": [[0, 0, 1, 5], [-1, 0, 0, 6], [0, -1, 0, 7], [0, 0, 0, 1]]})");

@@ -19,7 +19,7 @@ constexpr NormalCoding kCodings[] = {NormalCoding::kRgb8Gamma, NormalCoding::kRg
 // The resolution at which bins and normals are compared.
 constexpr double kMiddleScale = 0.5;
 
-std::vector<double> scales(bool quick) {
+std::vector<double> volume_scales(bool quick) {
   if (quick) return {0.25, 0.5, 1.0};
   return {0.125, 0.18, 0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0};
 }
@@ -47,7 +47,7 @@ class Sweep {
         points_(points) {}
 
   Status run() {
-    for (const double scale : scales(options_.quick)) {
+    for (const double scale : volume_scales(options_.quick)) {
       const auto images = cast(setting_.grid, scale, NormalCoding::kOctahedral16);
       for (const Gather gather : kGathers)
         NERITIC_TRY_STATUS(
@@ -138,7 +138,7 @@ Status measure_renderer(gpu::Device& device, scene::Scene scene, const Setting& 
   plain.bins_elevation = setting.grid.bins.elevation;
   plain.gather = "plane";
   scene.sonars.clear();
-  for (const double scale : scales(options.quick)) {
+  for (const double scale : volume_scales(options.quick)) {
     plain.gbuffer_scale = scale;
     scene.sonars.push_back(plain);
   }
@@ -174,7 +174,7 @@ Status measure_renderer(gpu::Device& device, scene::Scene scene, const Setting& 
     point.images = "renderer";
     point.gather = "plane";
     point.normals = name_of(NormalCoding::kOctahedral16);
-    point.scale = scales(options.quick)[i];
+    point.scale = volume_scales(options.quick)[i];
     const auto size =
         sonar::gbuffer_size(setting.grid, sonar::plan_sectors(setting.grid).front(), point.scale);
     point.width = size.width;
@@ -234,8 +234,8 @@ std::uint64_t plain_steps(const SonarTradeoffOptions& options) {
   if (!options.kind.empty()) return 0;
   const std::uint64_t sweeps =
       std::size(kGathers) *
-      (scales(options.quick).size() + bins_of(options.quick).size() - 1 + std::size(kCodings));
-  return options.scene.empty() ? sweeps + 1 : 2 * (sweeps + 1) + scales(options.quick).size();
+      (volume_scales(options.quick).size() + bins_of(options.quick).size() - 1 + std::size(kCodings));
+  return options.scene.empty() ? sweeps + 1 : 2 * (sweeps + 1) + volume_scales(options.quick).size();
 }
 
 Status measure_plain(gpu::Device& device, const SonarTradeoffOptions& options, SonarTradeoff& out) {

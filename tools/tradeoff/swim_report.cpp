@@ -11,15 +11,14 @@
 namespace neritic::tools {
 namespace {
 
-using diver::Model;
 
 constexpr const char* kSwimNames[] = {"straight", "turning", "ascent"};
 
-std::string model_name(Model model) {
-  return model == Model::kFull ? "full" : "planar";
+std::string model_name(diver::Model model) {
+  return model == diver::Model::kFull ? "full" : "planar";
 }
 std::string variant_name(const SwimPoint& p) {
-  return p.model == Model::kPlanar ? "planar"
+  return p.model == diver::Model::kPlanar ? "planar"
                                    : fmt::format("{} strip{}", p.strips, p.strips == 1 ? "" : "s");
 }
 

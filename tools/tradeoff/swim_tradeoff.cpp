@@ -11,14 +11,13 @@
 namespace neritic::tools {
 namespace {
 
-using diver::Model;
 
 constexpr int kTruthStrips = 64;
 // All swims are looked at so often: a whole number of every step but 1/240 s, which is met within.
 constexpr double kLook_s = 0.1;
 constexpr const char* kSwims[] = {"straight", "turning", "ascent"};
 
-diver::Body body_of(Model model, int strips) {
+diver::Body body_of(diver::Model model, int strips) {
   diver::BodyParameters p;
   p.model = model;
   p.strips_a_segment = strips;
@@ -105,19 +104,19 @@ double strips_a_second(const diver::Body& body, double step_s) {
 }
 
 struct Variant {
-  Model model;
+  diver::Model model;
   int strips;
 };
 std::vector<Variant> variants(const SwimTradeoffOptions& options) {
   std::vector<Variant> out;
-  for (const int strips : options.strips) out.push_back({Model::kFull, strips});
-  out.push_back({Model::kPlanar, diver::BodyParameters{}.strips_a_segment});
+  for (const int strips : options.strips) out.push_back({diver::Model::kFull, strips});
+  out.push_back({diver::Model::kPlanar, diver::BodyParameters{}.strips_a_segment});
   return out;
 }
 
 // Whether a point of the full model counts among those of a swim.
 bool counts(const SwimPoint& p, const std::string& swim) {
-  return p.swim == swim && p.model == Model::kFull && std::isfinite(p.error_m);
+  return p.swim == swim && p.model == diver::Model::kFull && std::isfinite(p.error_m);
 }
 
 }  // namespace
@@ -131,7 +130,7 @@ SwimTradeoff run_swim_tradeoff(const SwimTradeoffOptions& options) {
   out.swim_s = options.quick ? 2.0 : options.swim_s;
   for (const std::string swim : kSwims) {
     const Vec3 from = place_from(swim);
-    const diver::Body finest = body_of(Model::kFull, kTruthStrips);
+    const diver::Body finest = body_of(diver::Model::kFull, kTruthStrips);
     const auto truth = swim_all(finest, swim, out.swim_s, options.truth_step_s);
     options.step();
     const auto looser = swim_all(finest, swim, out.swim_s, 2.0 * options.truth_step_s);
@@ -159,7 +158,7 @@ SwimTradeoff run_swim_tradeoff(const SwimTradeoffOptions& options) {
 }
 
 bool is_default(const SwimPoint& p) {
-  return p.model == Model::kFull && p.strips == diver::BodyParameters{}.strips_a_segment &&
+  return p.model == diver::Model::kFull && p.strips == diver::BodyParameters{}.strips_a_segment &&
          std::abs(p.step_s - 1.0 / 240.0) < 1e-6;
 }
 

@@ -5,6 +5,7 @@
 #include "engine/scene/shapes.hpp"
 #include "testbed/sensors/session.hpp"
 #include "tests/support/gpu_fixture.hpp"
+#include "tests/support/picture_difference.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -106,12 +107,6 @@ int holes(const ImageU8& image) {
   return count;
 }
 
-double mean_difference(const ImageU8& a, const ImageU8& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.data.size(); ++i) sum += std::abs(int(a.data[i]) - int(b.data[i]));
-  return sum / static_cast<double>(a.data.size());
-}
-
 TEST_F(PictureExtremes, HaveNoHolesAndDoNotFlicker) {
   const double sun_in_water = std::acos(std::cos(radians(50.0)) / 1.333);
   const std::pair<const char*, Place> places[] = {
@@ -130,7 +125,7 @@ TEST_F(PictureExtremes, HaveNoHolesAndDoNotFlicker) {
     NERITIC_ASSERT_OK(const ImageU8 first, shown(*session));
     EXPECT_EQ(holes(first), 0) << name;
     NERITIC_ASSERT_OK(const ImageU8 second, shown(*session, 2.0, 1e-4));
-    EXPECT_LT(mean_difference(first, second), 1.0) << name;
+    EXPECT_LT(test::mean_difference(first, second), 1.0) << name;
   }
 }
 
@@ -183,7 +178,7 @@ TEST_F(PictureExtremes, AStillSceneChangesByLessThanALevelAFrame) {
                     Session::create(device(), everything({.particles = false})));
   NERITIC_ASSERT_OK(const ImageU8 now, shown(*session, 2.0));
   NERITIC_ASSERT_OK(const ImageU8 next, shown(*session, 2.0 + 1.0 / 30.0));
-  EXPECT_LT(mean_difference(now, next), 1.0);
+  EXPECT_LT(test::mean_difference(now, next), 1.0);
 }
 
 TEST_F(PictureExtremes, EachTermIsInTheGraphOnlyWhereItIsNamed) {

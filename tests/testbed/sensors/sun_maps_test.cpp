@@ -6,6 +6,7 @@
 #include "testbed/sensors/frame_memory.hpp"
 #include "testbed/sensors/session.hpp"
 #include "tests/support/gpu_fixture.hpp"
+#include "tests/support/picture_difference.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -50,7 +51,7 @@ scene::Scene beach(bool slides) {
   return scene;
 }
 
-ImageU8 shown(Session& session, double time_s, std::string* plan = nullptr) {
+ImageU8 maps_shown(Session& session, double time_s, std::string* plan = nullptr) {
   session.keep_plan_dump(true);
   FrameRequest request;
   request.cameras = {0};
@@ -65,7 +66,8 @@ ImageU8 shown(Session& session, double time_s, std::string* plan = nullptr) {
 TEST_F(SunMapsTest, AreDrawnOnceAndGiveTheSamePicture) {
   NERITIC_ASSERT_OK(const auto session, Session::create(device(), beach(false)));
   std::string first, second;
-  const ImageU8 before = shown(*session, 0.0, &first), after = shown(*session, 0.5, &second);
+  const ImageU8 before = maps_shown(*session, 0.0, &first),
+                after = maps_shown(*session, 0.5, &second);
   EXPECT_NE(first.find("eye sun shadows"), std::string::npos);
   EXPECT_EQ(second.find("pass \"eye sun shadows\""), std::string::npos) << second;
   EXPECT_EQ(second.find("moving shadows"), std::string::npos);
@@ -76,13 +78,13 @@ TEST_F(SunMapsTest, AreDrawnOnceAndGiveTheSamePicture) {
 TEST_F(SunMapsTest, WhatMovesIsDrawnOverThemAsInFreshOnes) {
   NERITIC_ASSERT_OK(const auto kept, Session::create(device(), beach(true)));
   std::string plan;
-  shown(*kept, 0.0);
-  const ImageU8 later = shown(*kept, 1.5, &plan);
+  maps_shown(*kept, 0.0);
+  const ImageU8 later = maps_shown(*kept, 1.5, &plan);
   EXPECT_NE(plan.find("moving shadows"), std::string::npos);
   NERITIC_ASSERT_OK(const auto fresh, Session::create(device(), beach(true)));
-  EXPECT_EQ(later.data, shown(*fresh, 1.5).data);
+  EXPECT_EQ(later.data, maps_shown(*fresh, 1.5).data);
   NERITIC_ASSERT_OK(const auto still, Session::create(device(), beach(false)));
-  EXPECT_NE(later.data, shown(*still, 1.5).data);
+  EXPECT_NE(later.data, maps_shown(*still, 1.5).data);
 }
 
 // A view set at a place, so that one session can look from many.
@@ -101,12 +103,6 @@ ImageU8 seen_from(Session& session, const Vec3& offset_m, const scene::PictureDe
   auto result = session.render(request);
   EXPECT_TRUE(result.ok()) << result.error().message;
   return result->views[0].eyes[0].color;
-}
-
-double mean_difference(const ImageU8& a, const ImageU8& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.data.size(); ++i) sum += std::abs(int(a.data[i]) - int(b.data[i]));
-  return sum / static_cast<double>(a.data.size());
 }
 
 // A window's view has the name of the camera that it looks through.
@@ -145,7 +141,7 @@ TEST_F(SunMapsTest, FollowTheCameraWithoutAPop) {
   // Over more than a step of the nearer map (0.83 m), by centimetres at a time round the step.
   for (double x = 0.02; x < 1.0; x += 0.02) {
     const ImageU8 now = seen_from(*session, Vec3(x, 0.0, 0.0));
-    worst = std::max(worst, mean_difference(last, now));
+    worst = std::max(worst, test::mean_difference(last, now));
     last = now;
   }
   EXPECT_LT(worst, 1.0);
@@ -169,7 +165,7 @@ TEST_F(SunMapsTest, ACoarserPictureHasTheSizeThatIsNamedAndTheArraysTheirOwn) {
   ASSERT_EQ(colors[0].height, 90u);
   EXPECT_EQ(depths[0], depths[1]);
   EXPECT_NE(colors[0].data, colors[1].data);
-  EXPECT_LT(mean_difference(colors[0], colors[1]), 6.0);
+  EXPECT_LT(test::mean_difference(colors[0], colors[1]), 6.0);
 }
 
 Result<scene::Scene> camera_with(const std::string& keys) {
