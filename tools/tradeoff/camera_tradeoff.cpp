@@ -10,6 +10,7 @@
 #include "testbed/sensors/session.hpp"
 #include "tools/common/curves.hpp"
 #include "tools/common/picture.hpp"
+#include "tools/tradeoff/flip.hpp"
 
 namespace neritic::tools {
 namespace {
@@ -84,37 +85,6 @@ Result<Shown> show(testbed::Session& session, const PictureDetail& detail, int r
   return out;
 }
 
-double linear_of(double encoded) {
-  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
-
-// Ottosson 2020: lightness and the two opponent axes.
-Vec3 oklab_of(const Vec3& rgb) {
-  const Vec3 c(linear_of(rgb.x), linear_of(rgb.y), linear_of(rgb.z));
-  const double l = std::cbrt(0.4122214708 * c.x + 0.5363325363 * c.y + 0.0514459929 * c.z);
-  const double m = std::cbrt(0.2119034982 * c.x + 0.6806995451 * c.y + 0.1073969566 * c.z);
-  const double s = std::cbrt(0.0883024619 * c.x + 0.2817188376 * c.y + 0.6299787005 * c.z);
-  return {0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s,
-          1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s,
-          0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s};
-}
-
-Vec3 blurred(const ImageU8& image, std::uint32_t x, std::uint32_t y) {
-  Vec3 sum(0.0);
-  for (int v = -1; v <= 1; ++v)
-    for (int u = -1; u <= 1; ++u) {
-      const auto at = [](std::uint32_t place, int off, std::uint32_t size) {
-        return static_cast<std::uint32_t>(
-            std::clamp<std::int64_t>(std::int64_t{place} + off, 0, std::int64_t{size} - 1));
-      };
-      const double weight = (2 - std::abs(u)) * (2 - std::abs(v)) / 16.0;
-      for (std::uint32_t c = 0; c < 3; ++c)
-        sum[static_cast<int>(c)] +=
-            weight * image.at(at(x, u, image.width), at(y, v, image.height), c) / 255.0;
-    }
-  return sum;
-}
-
 std::string psnr(double error) {
   return error > 0.0 ? fmt::format("{:.1f}", -20.0 * std::log10(error)) : "exact";
 }
@@ -132,14 +102,6 @@ double rms_error(const ImageU8& shown, const ImageU8& wanted) {
     sum += off * off;
   }
   return wanted.data.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(wanted.data.size()));
-}
-
-double perceived_error(const ImageU8& shown, const ImageU8& wanted) {
-  double sum = 0.0;
-  for (std::uint32_t y = 0; y < wanted.height; ++y)
-    for (std::uint32_t x = 0; x < wanted.width; ++x)
-      sum += glm::length(oklab_of(blurred(shown, x, y)) - oklab_of(blurred(wanted, x, y)));
-  return sum / std::max(1.0, double(wanted.width) * wanted.height);
 }
 
 Result<CameraTradeoff> run_camera_tradeoff(const CameraTradeoffOptions& options) {
@@ -165,7 +127,7 @@ Result<CameraTradeoff> run_camera_tradeoff(const CameraTradeoffOptions& options)
   for (const KnobSetting& setting : settings_of(options.quick)) {
     NERITIC_TRY(const Shown shown, show(*session, setting.detail, options.quick ? 2 : 4));
     out.points.push_back({setting.knob, setting.value, shown.ms, rms_error(shown.color, best.color),
-                          perceived_error(shown.color, best.color)});
+                          flip_error(shown.color, best.color)});
     options.step();
   }
   return out;
@@ -173,14 +135,15 @@ Result<CameraTradeoff> run_camera_tradeoff(const CameraTradeoffOptions& options)
 
 Result<bool> write_camera_tradeoff(const std::filesystem::path& folder,
                                    const CameraTradeoff& tradeoff) {
-  std::string csv = "knob,value,ms,error,psnr_db,perceived\n";
+  std::string csv = "knob,value,ms,error,psnr_db,flip\n";
   std::string md = fmt::format(
       "# A camera's picture: error over cost\n\n{}; `{}`, camera {}, {} x {}. Against "
       "`reference` with a resolution of 4; the other knobs are those of `standard`. ms: all passes "
       "of the "
       "device, maps of what stands still kept. Error: root mean square, 1 from black to white. "
-      "Perceived: mean distance in Oklab after the eye's blur.\n\n| knob | value | ms | error | "
-      "PSNR, dB | perceived |\n|---|---|---|---|---|---|\n",
+      "FLIP: how much an eye sees of it, 0 to 1 (Andersson et al. 2020), at 67 pixels a "
+      "degree.\n\n| knob | value | ms | error | "
+      "PSNR, dB | FLIP |\n|---|---|---|---|---|---|\n",
       tradeoff.device, tradeoff.scene, tradeoff.camera, tradeoff.width, tradeoff.height);
   nlohmann::json json{{"device", tradeoff.device},
                       {"scene", tradeoff.scene},
@@ -190,27 +153,27 @@ Result<bool> write_camera_tradeoff(const std::filesystem::path& folder,
             {fmt::format("{}, camera {} of {}, {} x {}", tradeoff.device, tradeoff.camera,
                          tradeoff.scene, tradeoff.width, tradeoff.height)}};
   Panel plain{"Root mean square", {"device, ms a frame"}, {"error, 1 from black to white"}};
-  Panel seen{"As an eye sees it", {"device, ms a frame"}, {"mean distance in Oklab"}};
+  Panel seen{"As an eye sees it", {"device, ms a frame"}, {"FLIP, 0 to 1"}};
   for (std::size_t i = 0; i < tradeoff.points.size();) {
     const std::string& knob = tradeoff.points[i].knob;
     Series errors{knob, {}, {}}, eyes{knob, {}, {}};
     for (; i < tradeoff.points.size() && tradeoff.points[i].knob == knob; ++i) {
       const CameraPoint& p = tradeoff.points[i];
       csv += fmt::format("{},{},{:.3f},{:.6f},{},{:.6f}\n", p.knob, p.value, p.ms, p.error,
-                         psnr(p.error), p.perceived);
+                         psnr(p.error), p.flip);
       md += fmt::format("| {} | {} | {:.1f} | {:.4f} | {} | {:.4f} |\n", p.knob, p.value, p.ms,
-                        p.error, psnr(p.error), p.perceived);
+                        p.error, psnr(p.error), p.flip);
       json["points"].push_back({{"knob", p.knob},
                                 {"value", p.value},
                                 {"ms", p.ms},
                                 {"error", p.error},
-                                {"perceived", p.perceived}});
+                                {"flip", p.flip}});
       for (Series* series : {&errors, &eyes}) {
         series->x.push_back(p.ms);
         series->notes.push_back(p.value);
       }
       errors.y.push_back(std::max(p.error, 1e-5));
-      eyes.y.push_back(std::max(p.perceived, 1e-6));
+      eyes.y.push_back(std::max(p.flip, 1e-6));
     }
     plain.series.push_back(std::move(errors));
     seen.series.push_back(std::move(eyes));

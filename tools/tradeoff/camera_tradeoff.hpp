@@ -25,7 +25,7 @@ struct CameraPoint {
   std::string value;
   double ms = 0.0;         // of the device's passes, the least of several
   double error = 0.0;      // root mean square, 1 from black to white
-  double perceived = 0.0;  // mean distance in Oklab, blurred as an eye does at 67 pixels a degree
+  double flip = 0.0;       // flip_error, 0 to 1
 };
 
 struct CameraTradeoff {
@@ -37,10 +37,6 @@ Result<CameraTradeoff> run_camera_tradeoff(const CameraTradeoffOptions& options)
 
 // The difference of two pictures of one size, in sRGB.
 double rms_error(const ImageU8& shown, const ImageU8& wanted);
-// Mean distance in Oklab (Ottosson 2020) after a blur of 3 x 3 pixels (1 2 1 over 4): what is
-// smaller than 1/67 degree is not seen. 1: from black to white.
-double perceived_error(const ImageU8& shown, const ImageU8& wanted);
-
 // Writes camera.csv, .md, .json and .plot.json into the folder. True: camera.png was drawn too.
 Result<bool> write_camera_tradeoff(const std::filesystem::path& folder,
                                    const CameraTradeoff& tradeoff);
