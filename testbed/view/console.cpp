@@ -6,6 +6,7 @@
 
 #include "testbed/instruments/instrument_data.hpp"
 #include "testbed/view/help_panel.hpp"
+#include "testbed/view/key_words.hpp"
 #include "testbed/view/panel_frame.hpp"
 
 namespace neritic::testbed {
@@ -283,8 +284,7 @@ void Console::look_at_cursor() {
 // The line under the panels when there is nothing to note: the task, or the first keys to know.
 std::string Console::standing_hint(bool worn) const {
   if (!options_.task.empty()) return options_.task;
-  if (worn) return options_.steers ? "F1  keys   P  steer" : "F1  keys";
-  return options_.steers ? "F1  keys   V  view   P  steer" : "F1  keys   V  view";
+  return first_keys(options_.actions, !worn, options_.steers);
 }
 
 void Console::draw(graph::FrameGraph& graph, const ConsoleFrame& frame) {
@@ -292,13 +292,14 @@ void Console::draw(graph::FrameGraph& graph, const ConsoleFrame& frame) {
   const float scale = overlay_.scale();
   const bool noted = now < note_until_ns_;
   if (help_page_) {
-    help_pages_ = draw_help(dive_actions(), *help_page_, scale);
+    help_pages_ = draw_help(options_.actions, *help_page_, scale);
   } else if (show_panels_) {
     PanelFacts facts = this->facts(graph, frame);
     add_on_demand(graph, frame, facts);
     const bool graphs = show_graphs_ && options_.physics;
     draw_panels(facts,
                 {.first_sonar = first_sonar_,
+                 .next_sonar = key_of(options_.actions, "next_sonar"),
                  .frames = &frame.times,
                  .device = show_times_ ? session_.device().info().name : "",
                  .hint = noted ? note_ : standing_hint(frame.world_from_head.has_value()),

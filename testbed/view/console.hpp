@@ -31,8 +31,9 @@
 namespace neritic::testbed {
 
 struct ConsoleOptions {
-  std::vector<std::size_t> sonars;  // of the scene, those that have a panel
-  sim::RunClock* clock = nullptr;   // of the run, for its pace
+  std::vector<xr::ActionDesc> actions;  // as they are bound
+  std::vector<std::size_t> sonars;      // of the scene, those that have a panel
+  sim::RunClock* clock = nullptr;       // of the run, for its pace
   const RunKeeper* keeper = nullptr;
   LivePhysics* physics = nullptr;    // whose numbers are drawn; nullptr: nothing moves by physics
   ViewMemory memory;                 // as the last window looked

@@ -63,7 +63,7 @@ std::vector<xr::ActionDesc> dive_actions() {
       {"move_up",
        kAxis,
        {"key E", "key Space", "-key Q", "pad right_trigger", "-pad left_trigger", "-right stick_y"},
-       "up (E, Space), down"},
+       "down, up"},
       {"fast",
        kAxis,
        {"key LeftShift", "key RightShift", "pad left_bumper", "right squeeze"},

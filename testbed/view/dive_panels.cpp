@@ -348,7 +348,8 @@ void draw_on_demand(const PanelFacts& facts, const PanelsShown& shown, const Dem
 }  // namespace
 
 std::string hint_words(const std::string& hint, const std::vector<std::string>& wished,
-                       const PanelLayout& layout, std::size_t sonars) {
+                       const PanelLayout& layout, std::size_t sonars,
+                       const std::string& next_sonar) {
   std::vector<std::string> out;
   for (std::size_t i = 0; i < wished.size(); ++i)
     if (layout.extras[i].empty()) out.push_back(wished[i]);
@@ -357,7 +358,8 @@ std::string hint_words(const std::string& hint, const std::vector<std::string>& 
   std::string words = hint;
   if (!out.empty()) words = fmt::format("no room: {}   {}", fmt::join(out, ", "), hint);
   if (!layout.fans.empty() && more > 0)
-    words += fmt::format("   Tab  {} more sonar{}", more, more > 1 ? "s" : "");
+    words += fmt::format("   {}{}{} more sonar{}", next_sonar, next_sonar.empty() ? "" : "  ", more,
+                         more > 1 ? "s" : "");
   return words;
 }
 
@@ -398,7 +400,8 @@ void draw_panels(const PanelFacts& facts, const PanelsShown& shown, TimeNs now_n
     draw_sonar(*sonars[i], layout.fans[i], facts.sonar_gain_db, facts.units, scale);
   draw_on_demand(facts, shown, demand, layout.extras, now_ns, scale);
   if (!layout.hint.empty())
-    draw_hint(hint_words(shown.hint, demand.names, layout, sonars.size()), scale, layout.hint);
+    draw_hint(hint_words(shown.hint, demand.names, layout, sonars.size(), shown.next_sonar), scale,
+              layout.hint);
 }
 
 void draw_recording_light(const std::string& text, float scale) {

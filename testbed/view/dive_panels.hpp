@@ -73,6 +73,7 @@ struct PanelFacts {
 // hint: one line at the lower edge.
 struct PanelsShown {
   std::size_t first_sonar = 0;
+  std::string next_sonar;  // the key to the next one; empty: none
   const DiveTimes* frames = nullptr;
   std::string device;  // of the passes' times; empty: they are not shown
   std::string hint;
@@ -82,9 +83,10 @@ struct PanelsShown {
   GraphChoice* graphs = nullptr;        // with numbers
 };
 // The line at the lower edge: what was asked for and has no room first. wished: names of the
-// layout's extras; sonars: how many there are to show.
+// layout's extras; sonars: how many there are to show; next_sonar: the key to the next one.
 std::string hint_words(const std::string& hint, const std::vector<std::string>& wished,
-                       const PanelLayout& layout, std::size_t sonars);
+                       const PanelLayout& layout, std::size_t sonars,
+                       const std::string& next_sonar);
 void draw_panels(const PanelFacts& facts, const PanelsShown& shown, TimeNs now_ns, float scale);
 // "0.5 to 10 m"
 std::string range_words(const sonar::Limits& limits, hud::Units units);

@@ -4,6 +4,7 @@
 
 #include "engine/core/log.hpp"
 #include "testbed/instruments/instrument_data.hpp"
+#include "testbed/view/key_words.hpp"
 
 namespace neritic::testbed {
 
@@ -11,9 +12,6 @@ static_assert(xr::kMostHiddenCorners <= render::kMostHidden);
 namespace {
 
 constexpr TimeNs kUnpaced_ns = 16'666'667;  // the period where no screen paces the frames
-constexpr const char* kSwimWords =
-    "you swim the diver: A D turn, also the mouse with its right button; W ahead, E Q up and down, "
-    "I K the jacket; P lets go";
 constexpr double kSpeeds[] = {0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0};
 
 }  // namespace
@@ -50,7 +48,8 @@ Result<std::unique_ptr<DiveView>> DiveView::create(Session& session, xr::Display
   if (overlay) {
     NERITIC_TRY(view->console_,
                 Console::create(session, *overlay,
-                                {.sonars = options.sonars,
+                                {.actions = options.actions,
+                                 .sonars = options.sonars,
                                  .clock = options.clock,
                                  .keeper = view->keeper_ ? &*view->keeper_ : nullptr,
                                  .physics = physics,
@@ -121,7 +120,7 @@ bool DiveView::swum_by_keys(DiveInput& input) {
     const bool on = !wearer_->swum_by_keys();
     wearer_->swim_by_keys(on);
     if (on && !his) choice_.choose_on(static_cast<int>(wearer_->object()));
-    tell(on ? kSwimWords : "the diver goes on as before");
+    tell(on ? swim_words(options_.actions) : "the diver goes on as before");
   }
   return wearer_->swum_by_keys();
 }

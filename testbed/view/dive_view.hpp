@@ -30,6 +30,7 @@ namespace neritic::testbed {
 std::uint32_t scaled(std::uint32_t pixels, double scale);
 
 struct DiveViewOptions {
+  std::vector<xr::ActionDesc> actions = dive_actions();  // that the display was made with
   std::size_t viewpoint = 0;          // of viewpoints_of(scene): where the view begins
   std::vector<std::size_t> sonars;    // of the scene, those that have a panel
   bool summary = false;               // keep samples of times for one

@@ -1,33 +1,14 @@
 #include "testbed/view/help_panel.hpp"
 
 #include <algorithm>
-#include <string>
-#include <vector>
 
+#include "testbed/view/key_words.hpp"
 #include "testbed/view/panel_frame.hpp"
 
 namespace neritic::testbed {
 namespace {
 
 constexpr float kColumnGap_px = 24.0f, kKeyGap_px = 14.0f;
-
-struct Row {
-  std::string controls, help;
-};
-
-// "W  S", "mouse wheel": the controls of keyboard and mouse.
-std::string desktop_controls(const xr::ActionDesc& action) {
-  std::string text;
-  for (std::string binding : action.bindings) {
-    if (binding.starts_with('-')) binding.erase(0, 1);
-    if (!binding.starts_with("key ") && !binding.starts_with("mouse ")) continue;
-    if (binding.starts_with("key ")) binding.erase(0, 4);
-    if (const auto at = binding.find(" while "); at != std::string::npos)
-      binding = "hold " + binding.substr(at + 7);
-    text += (text.empty() ? "" : "  ") + binding;
-  }
-  return text;
-}
 
 // The height of rows in the current font.
 struct Fit {
@@ -36,10 +17,10 @@ struct Fit {
   std::size_t a_page() const { return columns * rows; }
 };
 
-Fit fit(const std::vector<Row>& rows, float scale) {
+Fit fit(const std::vector<HelpRow>& rows, float scale) {
   Fit out;
   float help = 0.0f;
-  for (const Row& row : rows) {
+  for (const HelpRow& row : rows) {
     out.keys = std::max(out.keys, ImGui::CalcTextSize(row.controls.c_str()).x);
     help = std::max(help, ImGui::CalcTextSize(row.help.c_str()).x);
   }
@@ -60,7 +41,7 @@ Fit fit(const std::vector<Row>& rows, float scale) {
 
 // Where one column is wider than the window: each action's controls with its help below, both
 // wrapped; the first rows of each page, and the number of all.
-std::vector<std::size_t> stacked_pages(const std::vector<Row>& rows, const ImVec2& room) {
+std::vector<std::size_t> stacked_pages(const std::vector<HelpRow>& rows, const ImVec2& room) {
   std::vector<std::size_t> first{0};
   float used = 0.0f;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -78,7 +59,7 @@ std::vector<std::size_t> stacked_pages(const std::vector<Row>& rows, const ImVec
   return first;
 }
 
-std::size_t draw_stacked(const std::vector<Row>& rows, std::size_t page, float scale) {
+std::size_t draw_stacked(const std::vector<HelpRow>& rows, std::size_t page, float scale) {
   const ImVec2 display = ImGui::GetIO().DisplaySize, padding = ImGui::GetStyle().WindowPadding;
   const float edge = kEdge_px * scale;
   const ImVec2 size(display.x - edge, display.y - edge);
@@ -102,10 +83,16 @@ std::size_t draw_stacked(const std::vector<Row>& rows, std::size_t page, float s
 
 }  // namespace
 
-std::size_t draw_help(std::span<const xr::ActionDesc> actions, std::size_t page, float scale) {
-  std::vector<Row> rows;
+std::vector<HelpRow> help_rows(std::span<const xr::ActionDesc> actions) {
+  std::vector<HelpRow> rows;
   for (const xr::ActionDesc& action : actions)
-    if (!action.help.empty()) rows.push_back({desktop_controls(action), action.help});
+    if (std::string controls = control_words(action); !action.help.empty() && !controls.empty())
+      rows.push_back({std::move(controls), action.help});
+  return rows;
+}
+
+std::size_t draw_help(std::span<const xr::ActionDesc> actions, std::size_t page, float scale) {
+  const std::vector<HelpRow> rows = help_rows(actions);
   const Fit fits = fit(rows, scale);
   if (fits.column >
       ImGui::GetIO().DisplaySize.x - kEdge_px * scale - 2.0f * ImGui::GetStyle().WindowPadding.x)
@@ -116,13 +103,13 @@ std::size_t draw_help(std::span<const xr::ActionDesc> actions, std::size_t page,
   ImGui::SetNextWindowPos(ImVec2(display.x * 0.5f, display.y * 0.5f), ImGuiCond_Always,
                           ImVec2(0.5f, 0.5f));
   ImGui::SetNextWindowBgAlpha(0.92f);
-  const std::string title =
-      pages > 1 ? fmt::format("Keys, page {} of {}   F1: on###keys", page + 1, pages)
-                : "Keys###keys";
+  const std::string title = pages > 1 ? fmt::format("Keys, page {} of {}   {}###keys", page + 1,
+                                                    pages, with_key(actions, "help", "on"))
+                                      : "Keys###keys";
   ImGui::Begin(title.c_str(), nullptr, kFixedPanel | ImGuiWindowFlags_AlwaysAutoResize);
   const ImVec2 start = ImGui::GetCursorPos();
   for (std::size_t i = 0; i < fits.a_page() && first + i < rows.size(); ++i) {
-    const Row& row = rows[first + i];
+    const HelpRow& row = rows[first + i];
     const ImVec2 at(
         start.x + static_cast<float>(i / fits.rows) * (fits.column + kColumnGap_px * scale),
         start.y + static_cast<float>(i % fits.rows) * ImGui::GetTextLineHeightWithSpacing());

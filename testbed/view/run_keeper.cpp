@@ -2,6 +2,8 @@
 
 #include <ctime>
 
+#include "testbed/view/key_words.hpp"
+
 namespace neritic::testbed {
 namespace {
 
@@ -31,17 +33,26 @@ std::string RunKeeper::save() {
       [&](PhysicsSimulation& simulation) { saved = saved_state(simulation, format); });
   const Status written = write_state(state_file(), format, *saved);
   if (!written.ok()) return written.error().message;
-  return fmt::format("saved {:.1f} s to {}   F9 goes back to it",
-                     static_cast<double>(saved->step) * format.step_s, state_file().string());
+  const std::string back = key_of(options_.actions, "go_back");
+  return fmt::format("saved {:.1f} s to {}{}", static_cast<double>(saved->step) * format.step_s,
+                     state_file().string(),
+                     back.empty() ? "" : fmt::format("   {} goes back to it", back));
 }
 
 std::string RunKeeper::go_back(bool& went) {
   went = false;
-  if (!options_.no_way_back.empty()) return options_.no_way_back;
-  if (switch_.on()) return "F9: the recording cannot go back; F4 ends it";
+  const auto refused = [&](const std::string& why) {
+    return with_key(options_.actions, "go_back", why);
+  };
+  const auto also = [&](const char* action, const char* does) {
+    const std::string key = key_of(options_.actions, action);
+    return key.empty() ? std::string() : fmt::format("; {} {}", key, does);
+  };
+  if (!options_.no_way_back.empty()) return refused(options_.no_way_back);
+  if (switch_.on()) return refused("the recording cannot go back" + also("record", "ends it"));
   std::error_code error;
   if (!fs::exists(state_file(), error))
-    return fmt::format("F9: no {}; F5 saves it", state_file().string());
+    return refused("no " + state_file().string() + also("save", "saves it"));
   const auto saved = read_state(state_file(), physics_.world().state_format());
   if (!saved.ok()) return saved.error().message;
   const Status status = physics_.go_to(*saved);

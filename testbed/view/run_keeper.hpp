@@ -4,7 +4,9 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "engine/xr/actions.hpp"
 #include "testbed/motion/live_physics.hpp"
 #include "testbed/record/recording_switch.hpp"
 
@@ -16,6 +18,7 @@ struct RunKeeperOptions {
   std::string recording;   // a file that records the whole run; empty: none
   // Why the run cannot go back; empty: it can.
   std::string no_way_back;
+  std::vector<xr::ActionDesc> actions = {};  // as they are bound, for notes that name a key
 };
 
 class RunKeeper {

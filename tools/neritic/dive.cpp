@@ -225,7 +225,8 @@ double least_budget_ms(const Screen& screen) {
 
 // The run's state and recording by key.
 std::optional<RunKeeperOptions> kept_by_key(const DiveFlags& flags,
-                                            const RecordingOptions& recording) {
+                                            const RecordingOptions& recording,
+                                            const std::vector<xr::ActionDesc>& actions) {
   if (flags.headless || !flags.replay.empty()) return {};
   const StepFileFlags& files = flags.files;
   const char* const written = !files.record.empty() ? "--record"
@@ -237,7 +238,8 @@ std::optional<RunKeeperOptions> kept_by_key(const DiveFlags& flags,
       .scene = recording,
       .recording = files.record,
       .no_way_back =
-          *written ? fmt::format("F9: {} writes this run, which cannot go back", written) : ""};
+          *written ? fmt::format("{} writes this run, which cannot go back", written) : "",
+      .actions = actions};
 }
 
 // On standard output: a dive's end, the same as without pictures; without a window the times too.
@@ -321,7 +323,8 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::stri
       const auto view,
       DiveView::create(
           *session, screen.shown_on(), screen.overlay.get(), physics.get(),
-          {.viewpoint = chosen.viewpoint,
+          {.actions = screen.actions,
+           .viewpoint = chosen.viewpoint,
            .sonars = chosen.sonars,
            .summary = flags.headless,
            .screenshot = flags.screenshot,
@@ -333,7 +336,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::stri
            .frame_s = 1.0 / camera.rate_hz,
            .timeline = !flags.timeline.empty(),
            .overlap = flags.fast,
-           .keep = kept_by_key(flags, recording),
+           .keep = kept_by_key(flags, recording, screen.actions),
            .no_keys_for_files = replay ? "a replay is neither saved nor recorded"
                                        : "nothing moves by physics: there is no state to save",
            .nobody_to_steer =

@@ -158,7 +158,7 @@ TEST(PanelLayout, NoPanelIsNarrowerThanWhatStandsInIt) {
 TEST(PanelLayout, TheHintNamesWhatHasNoRoom) {
   const PanelLayout small = lay_out(640, 300, 130, kFans[1], kWishes);
   const std::vector<std::string> names{"gauges", "graphs", "map", "inset"};
-  const std::string words = hint_words("F1  keys", names, small, 1);
+  const std::string words = hint_words("F1  keys", names, small, 1, "Tab");
   ASSERT_FALSE(small.hint.empty());
   for (std::size_t i = 0; i < names.size(); ++i)
     EXPECT_EQ(words.find(names[i]) != std::string::npos, small.extras[i].empty()) << words;
@@ -166,7 +166,8 @@ TEST(PanelLayout, TheHintNamesWhatHasNoRoom) {
   EXPECT_NE(words.find("map"), std::string::npos) << words;
   EXPECT_NE(words.find("F1  keys"), std::string::npos) << words;
   const PanelLayout wide = lay_out(1920, 1080, 200, kFans[2]);
-  EXPECT_EQ(hint_words("F1", {}, wide, wide.fans.size() + 1), "F1   Tab  1 more sonar");
+  EXPECT_EQ(hint_words("F1", {}, wide, wide.fans.size() + 1, "T"), "F1   T  1 more sonar");
+  EXPECT_EQ(hint_words("F1", {}, wide, wide.fans.size() + 2, ""), "F1   2 more sonars");
 }
 
 TEST(PanelLayout, PanelsOnDemandComeBeforeFansAndFitTheSmallestWindowByOne) {
