@@ -223,4 +223,14 @@ Pose world_from_wrist(const PhysicsHuman& human, const HumanPhysics& state, bool
                               root.attitude * hand.rotation);
 }
 
+// The model's nodes have parallel axes while its arms are spread: a drawn hand is turned against
+// the body's by that angle (diver/frames.hpp, standing_joints).
+Pose world_from_drawn_wrist(const PhysicsHuman& human, const scene::MotionSource& motion,
+                            double time_s) {
+  const Pose drawn = motion.world_from_joint(human.object, human.nodes[diver::kLeftHand], time_s);
+  const double spread_rad = diver::side_of(diver::kLeftHand) * human.arms_spread_rad;
+  return {drawn.position_m,
+          glm::normalize(drawn.rotation * glm::angleAxis(spread_rad, Vec3(0.0, 0.0, 1.0)))};
+}
+
 }  // namespace neritic::testbed

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/scene/motion.hpp"
 #include "hud/shown.hpp"
 #include "testbed/devices/device_source.hpp"
 #include "testbed/simulation/physics_world.hpp"
@@ -36,7 +37,11 @@ struct DiverGauge {
 };
 DiverGauge gauge_of(const PhysicsHuman& human, const HumanPhysics& state);
 
-// The drawn hand: origin at the wrist, axes of hud::Lock::kWrist, as those of a tracked one.
+// The hand in a state: origin at the wrist, axes of hud::Lock::kWrist, as those of a tracked one.
 Pose world_from_wrist(const PhysicsHuman& human, const HumanPhysics& state, bool right = false);
+// The left one as a picture of that time draws it: by the motion that the picture is drawn with,
+// which may be predicted from an older state. motion: of the scene that human is of.
+Pose world_from_drawn_wrist(const PhysicsHuman& human, const scene::MotionSource& motion,
+                            double time_s);
 
 }  // namespace neritic::testbed

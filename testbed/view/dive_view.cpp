@@ -383,10 +383,11 @@ Status DiveView::declare_hud(graph::FrameGraph& graph, const SensorFrame& frame,
                world_from_head_ * group.views.front().head_from_view};
   seen.stage_at_eyes = !session_.scene().world_from_lab;
   seen.seen_s = seen_s(time_s);
-  // On the drawn arm, which follows the tracked one.
+  // On the arm as this picture draws it, which follows the tracked one.
   if (frame_.tracked.hands[0] && wearer_ && wears_)
     seen.world_from_wrist =
-        world_from_wrist(physics_->world().humans()[0], physics_->shown().humans()[0]);
+        world_from_drawn_wrist(physics_->world().humans()[0],
+                               scene::MotionSource(session_.scene(), &physics_->motion()), time_s);
   for (const SensorFrame::Views& views : frame.views)
     if (views.index == camera_view_) seen.camera = {views.color, views.width, views.height};
   if (hud_->wants_pictures(seen.seen_s) && console_sonar_ && console_fans_)
