@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "engine/core/hash.hpp"
+#include "engine/gpu/device.hpp"
+#include "engine/gpu/pipeline_work.hpp"
 
 namespace neritic::gpu {
 namespace {
@@ -79,7 +81,9 @@ Result<PipelineShelf::Made> PipelineShelf::get(const std::string& key,
     found->second.asked = ++requests_;
     return found->second.made;
   }
+  const TimeNs begun = now_ns();
   NERITIC_TRY(Made made, make());
+  work_ = {work_.made + 1, work_.took_ns + now_ns() - begun};
   entries_[key] = {made, ++requests_};
   drop_unused();
   return made;
@@ -92,6 +96,21 @@ void PipelineShelf::drop_unused() {
   if (unused.size() <= kUnusedKept) return;
   std::ranges::sort(unused);
   for (std::size_t i = 0; i + kUnusedKept < unused.size(); ++i) entries_.erase(*unused[i].second);
+}
+
+PipelineShelf::Work PipelineShelf::work() const {
+  const std::lock_guard lock(mutex_);
+  return work_;
+}
+
+PipelineWork pipeline_work(const Device& device) {
+  const PipelineShelf::Work work = device.pipelines().work();
+  PipelineWork out{work.made, 1e-9 * static_cast<double>(work.took_ns)};
+  if (device.pipeline_cache() != VK_NULL_HANDLE &&
+      vkGetPipelineCacheData(device.handle(), device.pipeline_cache(), &out.cache_bytes, nullptr) !=
+          VK_SUCCESS)
+    out.cache_bytes = 0;
+  return out;
 }
 
 }  // namespace neritic::gpu

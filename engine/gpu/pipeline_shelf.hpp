@@ -12,6 +12,7 @@
 #include <mutex>
 #include <string>
 
+#include "engine/core/clock.hpp"
 #include "engine/core/result.hpp"
 #include "engine/gpu/pipeline.hpp"
 
@@ -24,6 +25,12 @@ class PipelineShelf {
 
   // The pipeline of the key, made by `make` if there is none. An error leaves the shelf as it was.
   Result<Made> get(const std::string& key, const std::function<Result<Made>()>& make);
+  // How many it has made so far, one that was dropped and made again twice; how long that took.
+  struct Work {
+    std::uint64_t made = 0;
+    TimeNs took_ns = 0;
+  };
+  Work work() const;
 
  private:
   void drop_unused();
@@ -31,9 +38,10 @@ class PipelineShelf {
     Made made;
     std::uint64_t asked = 0;  // the request that asked for it last
   };
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::map<std::string, Entry> entries_;
   std::uint64_t requests_ = 0;
+  Work work_;
 };
 
 // Everything of a description by which two pipelines can differ. Code counts by its hash.

@@ -16,6 +16,7 @@
 #include "testbed/view/console.hpp"
 #include "testbed/view/dive_hud.hpp"
 #include "testbed/view/dive_pilot.hpp"
+#include "testbed/view/dive_prepare.hpp"
 #include "testbed/view/dive_times.hpp"
 #include "testbed/view/frame_timeline.hpp"
 #include "testbed/view/picker.hpp"
@@ -100,7 +101,8 @@ class DiveView final : public FrameView {
  private:
   DiveView(Session& session, xr::Display& display, DivePilot pilot, const DiveViewOptions& options);
   Status prepare();
-  Status draw_unseen(std::span<const xr::ViewGroup> groups, double scale, std::uint32_t light);
+  Status draw_unseen(std::span<const xr::ViewGroup> groups, const UnseenPicture& picture,
+                     bool sonars);
   ViewsRequest request_of(std::size_t group, std::uint32_t light) const;
   Pose world_from_stage(const scene::MotionSource& motion, double time_s);
   bool swum_by_keys(DiveInput& input);

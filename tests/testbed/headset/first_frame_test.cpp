@@ -34,7 +34,7 @@ class HeadsetFirstFrame : public HeadsetRun {
 // A frame that makes pipelines is a gap of seconds.
 TEST_F(HeadsetFirstFrame, NoGapBetweenFramesIsLongOnceTheSessionRuns) {
   const ColdShaders cold;
-  fakes::FakeHeadset fake("size 64 60\nreal_time yes\nperiod 0.05\n");
+  fakes::FakeHeadset fake("size 94 94\nreal_time yes\nperiod 0.05\n");
   without_validation();  // compiles each shader once more
   govern();
   const scene::Scene scene =

@@ -3,47 +3,16 @@
 #include <gtest/gtest.h>
 
 #include "diver/segments.hpp"
-#include "engine/xr/offscreen.hpp"
 #include "hud/layout.hpp"
 #include "testbed/instruments/instrument_data.hpp"
 #include "testbed/view/dive_camera.hpp"
 #include "testbed/view/dive_view.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/testbed/simulation/dives.hpp"
+#include "tests/testbed/view/kept_display.hpp"
 
 namespace neritic::testbed {
 namespace {
-
-// A headset as a view sees it: tracks a head and a left hand, and keeps the layers that it is
-// given.
-class WornDisplay final : public xr::Display {
- public:
-  Result<xr::DisplayFrame> begin_frame(const Pose& world_from_stage) override {
-    xr::DisplayFrame frame{.verdict = xr::FrameVerdict::kDraw,
-                           .world_from_head = world_from_stage,
-                           .groups = {xr::one_view(64, 64, radians(80.0))}};
-    frame.tracked.hands[0] = world_from_stage * Pose{{-0.1, -0.25, -0.35}};
-    return frame;
-  }
-  Result<xr::ShownPicture> declare(graph::FrameGraph&, const Pose&,
-                                   std::span<const xr::Layer> layers) override {
-    layers_.assign(layers.begin(), layers.end());
-    return xr::ShownPicture{};
-  }
-  gpu::Frames::SubmitSync sync() const override { return {}; }
-  Status end_frame(bool) override { return {}; }
-  xr::ActionValues take_actions(const xr::InputClaims&) override { return {}; }
-  // The panel of that name in the last frame.
-  const xr::PanelLayer* panel(const std::string& name) const {
-    for (const xr::Layer& layer : layers_)
-      if (const auto* panel = std::get_if<xr::PanelLayer>(&layer); panel && panel->name == name)
-        return panel;
-    return nullptr;
-  }
-
- private:
-  std::vector<xr::Layer> layers_;
-};
 
 class DrawnWrist : public test::GpuTest {
  protected:
@@ -82,7 +51,7 @@ class DrawnWrist : public test::GpuTest {
 
   std::unique_ptr<LivePhysics> physics_;
   std::unique_ptr<Session> session_;
-  WornDisplay display_;
+  KeptDisplay display_{true};
 };
 
 // At rest the joint of the model and the body's wrist are one.
@@ -107,7 +76,7 @@ TEST_F(DrawnWrist, CarriesItsInstrumentInAPictureAheadOfTheNewestState) {
     const double time_s = physics_->newest().time_s + ahead_s;
     NERITIC_ASSERT_STATUS(frame(*view, time_s));
     const hud::Layout& layout = hud::layout_of(hud::LayoutKind::kWrist);
-    const xr::PanelLayer* const panel = display_.panel(std::string(layout.name));
+    const xr::PanelLayer* const panel = display_.panel(layout.name);
     ASSERT_NE(panel, nullptr);
     ASSERT_EQ(panel->lock, xr::PanelLayer::Lock::kWorld);
     const Pose wrist = panel->pose * inverse(layout.lock_from_panel);
