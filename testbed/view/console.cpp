@@ -76,14 +76,30 @@ void Console::take(const DiveInput& input) {
   }
   if (input.toggle_panels) show_panels_ = !show_panels_;
   if (input.toggle_times) show_times_ = !show_times_;
-  first_sonar_ += input.next_sonar ? 1 : 0;
   if (input.toggle_map) show_map_ = !show_map_;
-  if (input.toggle_graphs) show_graphs_ = !show_graphs_;
+  if (input.toggle_graphs) toggle_graphs();
   if (input.next_inset) {
     const std::size_t next = inset_ ? *inset_ + 1 : 0;
     inset_ = next < session_.scene().cameras.size() ? std::optional(next) : std::nullopt;
   }
-  if (input.gain_step == 0 && !input.next_range) return;
+  work_sonars(input);
+}
+
+// What is not there is not turned on unseen for a later dive.
+void Console::toggle_graphs() {
+  if (options_.physics)
+    show_graphs_ = !show_graphs_;
+  else
+    note("nothing moves by physics: there are no numbers for graphs");
+}
+
+void Console::work_sonars(const DiveInput& input) {
+  const bool settings = input.gain_step != 0 || input.next_range;
+  if (!settings && !input.next_sonar) return;
+  if (options_.sonars.empty()) return note("no sonar is shown here");
+  if (input.next_sonar && options_.sonars.size() == 1) note("no other sonar is shown here");
+  first_sonar_ += input.next_sonar ? 1 : 0;
+  if (!settings) return;
   gain_db_ = std::clamp(gain_db_ + kGainStep_db * input.gain_step, -kMostGain_db, kMostGain_db);
   if (input.next_range) range_part_ = range_part_ > 0.3 ? 0.5 * range_part_ : 1.0;
   show_sonars();

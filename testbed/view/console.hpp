@@ -100,6 +100,8 @@ class Console {
   void draw_mark(TimeNs now_ns, float scale, std::span<const PanelRect> instruments) const;
   void look_at_cursor();
   void show_sonars();
+  void toggle_graphs();
+  void work_sonars(const DiveInput& input);
 
   Session& session_;
   xr::Overlay& overlay_;

@@ -134,6 +134,7 @@ bool DiveView::take_input() {
   input = with_commands(input, beside);
   if (console_) console_->take(input);
   if (input.cycle_hud && hud_) hud_->cycle();
+  if (input.cycle_hud && !hud_) tell(options_.no_instruments);
   if (options_.clock) take_time(input);
   keep_run(input);
   if (input.screenshot) screenshots_.ask();
@@ -157,6 +158,8 @@ bool DiveView::take_input() {
     wearer_->take(wears_ && placed_ ? frame_ : xr::DisplayFrame{}, input, choice_.world_from_eyes(),
                   speed, elapsed_s_);
   if (input.toggle_pilot && !steers()) tell(options_.nobody_to_steer);
+  if (input.jacket != 0 && !works_jacket_) tell(no_jacket());
+  works_jacket_ = input.jacket != 0;
   const bool flew = pilot_.flying();
   DiveInput flown = watched() ? beside : input;
   flown.toggle_pilot = input.toggle_pilot;
@@ -217,6 +220,13 @@ std::optional<ViewMemory> DiveView::memory() const {
 bool DiveView::steers() const {
   return options_.may_fly && physics_ &&
          (!physics_->world().vehicles().empty() || !physics_->world().humans().empty());
+}
+
+// Why the jacket's keys do nothing; empty: a diver has one.
+std::string DiveView::no_jacket() const {
+  if (wearer_ && physics_->world().humans()[0].body.jacket.capacity_m3 > 0.0) return {};
+  if (!steers()) return options_.nobody_to_steer;
+  return wearer_ ? "the diver wears no jacket" : "no diver here wears a jacket";
 }
 
 // In a window a note, else a line.

@@ -52,6 +52,7 @@ struct DiveViewOptions {
   std::optional<RunKeeperOptions> keep;
   std::string no_keys_for_files;
   std::string nobody_to_steer;       // the note of the key that takes control, where it takes none
+  std::string no_instruments;        // the note of the key for them, without `hud`
   ViewMemory memory;                 // as the last window looked
   const Devices* devices = nullptr;  // whose health the panels show; outlives the view
   bool beside_headset = false;       // the overlay is of a window beside it
@@ -120,6 +121,7 @@ class DiveView final : public FrameView {
                      std::vector<xr::Layer>& layers);
   void keep_run(const DiveInput& input);
   bool steers() const;
+  std::string no_jacket() const;
   // A headset is worn, and an operator watches in a window beside it.
   bool watched() const { return options_.beside_headset && frame_.world_from_head.has_value(); }
   void tell(const std::string& note);
@@ -150,7 +152,8 @@ class DiveView final : public FrameView {
   // Of the request's view sets: the console's inset, the HUD's camera; absent: not in this frame.
   std::optional<std::size_t> inset_view_, camera_view_;
   std::optional<QualityGovernor> governor_;
-  double lamp_share_ = 1.0;  // of those that the key switches
+  double lamp_share_ = 1.0;    // of those that the key switches
+  bool works_jacket_ = false;  // a key of the jacket is held
   Screenshots screenshots_;
   Picker picker_;
   xr::DisplayFrame frame_;

@@ -342,6 +342,9 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::stri
            .nobody_to_steer =
                replay ? "a replay is not steered"
                       : "nobody here is steered: begin with --swim to be a diver in this scene",
+           .no_instruments =
+               replay ? "nobody in this recording dives by physics: there are no instruments"
+                      : "nobody here dives by physics: begin with --swim to have instruments",
            .memory = screen.memory,
            .devices = devices.get(),
            .beside_headset = screen.beside_headset(),

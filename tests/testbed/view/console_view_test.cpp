@@ -1,13 +1,16 @@
-// The operator's console as it draws over a view: the keys as they are bound.
+// The operator's console as it draws over a view: the keys as they are bound, notes of keys that do
+// nothing here.
 #include <gtest/gtest.h>
 #include <imgui_internal.h>
 
 #include "engine/xr/offscreen.hpp"
 #include "testbed/view/bindings.hpp"
 #include "testbed/view/console.hpp"
+#include "testbed/view/dive_view.hpp"
 #include "testbed/view/key_words.hpp"
 #include "tests/support/gpu_fixture.hpp"
 #include "tests/testbed/simulation/dives.hpp"
+#include "tests/testbed/view/kept_display.hpp"
 
 namespace neritic::testbed {
 namespace {
@@ -90,6 +93,19 @@ class ConsoleView : public test::GpuTest {
     return read_text(log_).value();
   }
 
+  // Whether the view's console draws anything over its next frame.
+  bool shows_panels(DiveView& view, KeptDisplay& display) {
+    graph::FrameGraph graph;
+    EXPECT_TRUE(view.begin_frame().ok());
+    view.take_input();
+    FrameRequest request{.capture = kColorOnGpu};
+    view.add_views(request);
+    const auto declared = session_->declare(graph, request);
+    EXPECT_TRUE(declared.ok() && view.declare(graph, **declared, 0.0, false).ok());
+    EXPECT_TRUE(view.end_frame(std::nullopt).ok());
+    return display.panel("panels") != nullptr;
+  }
+
   std::unique_ptr<Session> session_;
   std::unique_ptr<xr::Overlay> overlay_;
   std::unique_ptr<Console> console_;
@@ -117,6 +133,37 @@ TEST_F(ConsoleView, TheListOfKeysIsOfThoseThatAreBound) {
   EXPECT_TRUE(listed("Z / U", "down, up")) << text;
   EXPECT_EQ(text.find("end the dive"), std::string::npos) << text;
   EXPECT_EQ(text.find("F1 "), std::string::npos) << text;
+}
+
+// In a scene of one ball: no physics, no sonar, no diver.
+TEST_F(ConsoleView, KeysOfWhatIsNotThereSayWhyAndLeaveTheSettingsAsTheyWere) {
+  for (const DiveInput& input : std::initializer_list<DiveInput>{
+           {.toggle_graphs = true}, {.next_sonar = true}, {.next_range = true}, {.gain_step = 1}}) {
+    make(dive_actions());
+    const ViewMemory before = console_->memory();
+    EXPECT_FALSE(draws());
+    console_->take(input);
+    EXPECT_TRUE(draws()) << "a note";
+    EXPECT_EQ(console_->memory(), before);
+  }
+  make(dive_actions());
+  console_->take({.toggle_map = true});
+  EXPECT_FALSE(draws());
+  EXPECT_TRUE(console_->memory().map);
+}
+
+TEST_F(ConsoleView, AViewNotesTheKeysForWhichNobodyIsThere) {
+  for (const char* action : {"hud", "inflate", "pilot", "save"}) {
+    KeptDisplay display(false);
+    NERITIC_ASSERT_OK(const auto view, DiveView::create(*session_, display, overlay_.get(), nullptr,
+                                                        {.no_keys_for_files = "no file",
+                                                         .nobody_to_steer = "nobody",
+                                                         .no_instruments = "no instruments",
+                                                         .memory = {.panels = false}}));
+    EXPECT_FALSE(shows_panels(*view, display)) << action;
+    display.press(action);
+    EXPECT_TRUE(shows_panels(*view, display)) << action;
+  }
 }
 
 }  // namespace
