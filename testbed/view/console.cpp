@@ -343,7 +343,7 @@ Result<std::optional<xr::PanelLayer>> Console::declare(graph::FrameGraph& graph,
   if (!show_panels_ && !help_page_ && !noted && options_.task.empty() && recording().empty())
     return std::optional<xr::PanelLayer>();
   draw(graph, frame);
-  draw_mark(now, overlay_.scale(), frame.taken);
+  if (!help_page_) draw_mark(now, overlay_.scale(), frame.taken);
   const graph::ImageHandle image = overlay_.declare(graph);
   return std::optional(screen_panel(frame.group, image, overlay_.drawn()));
 }

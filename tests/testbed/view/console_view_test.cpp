@@ -1,5 +1,5 @@
 // The operator's console as it draws over a view: the keys as they are bound, notes of keys that do
-// nothing here.
+// nothing here, and what was clicked.
 #include <gtest/gtest.h>
 #include <imgui_internal.h>
 
@@ -164,6 +164,20 @@ TEST_F(ConsoleView, AViewNotesTheKeysForWhichNobodyIsThere) {
     display.press(action);
     EXPECT_TRUE(shows_panels(*view, display)) << action;
   }
+}
+
+TEST_F(ConsoleView, WhatWasClickedIsNotMarkedOverTheListOfKeys) {
+  make(dive_actions());
+  const auto marks = [&] {
+    EXPECT_TRUE(draws());
+    return ImGui::GetForegroundDrawList()->VtxBuffer.Size > 0;
+  };
+  console_->mark({Vec2(0.5), "ball"});
+  EXPECT_TRUE(marks());
+  console_->take({.toggle_help = true});
+  EXPECT_FALSE(marks());
+  console_->take({.toggle_help = true});
+  EXPECT_TRUE(marks());
 }
 
 }  // namespace
