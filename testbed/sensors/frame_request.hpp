@@ -66,6 +66,9 @@ struct ViewsRequest {
   Capture capture = kColorOnGpu;
   std::optional<CameraPicture> camera = {};  // absent: a pinhole's
   Thrift thrift = {};
+  // One particle of each kind that the scene's water may show at any time, clear: for a picture
+  // that makes a driver compile.
+  bool each_particle = false;
 };
 
 struct FrameRequest {

@@ -263,6 +263,12 @@ Result<graph::ImageHandle> declare_color(const FrameParts& frame, const std::str
     work.particles = render::view_particles(frame.motion, frame.snow, frame.bubbles,
                                             frame.scene.seed, views, frame.state.time_s,
                                             detail.particles, request.thrift.spot_px, skylight);
+    if (request.each_particle)
+      for (const std::uint32_t kind : work.particles.kinds)
+        work.particles.particles.push_back({.position = Vec3f(0.0f, 0.0f, -1.0f),
+                                            .radius_m = 0.01f,
+                                            .opacity = 0.0f,
+                                            .kind = kind});
   }
   NERITIC_TRY(graph::ImageHandle hdr,
               request.camera && request.camera->terms.spectrum

@@ -123,6 +123,7 @@ Status DiveView::draw_unseen(std::span<const xr::ViewGroup> groups, const Unseen
     const xr::ViewGroup& group = groups[i];
     ViewsRequest views = request_of(i, picture.light);
     std::tie(views.views.width, views.views.height) = picture.sizes[i];
+    views.each_particle = true;
     for (std::size_t k = 0; k < group.views.size(); ++k) {
       const double yaw_rad =
           2.0 * kPi * static_cast<double>(k) / static_cast<double>(group.views.size());
