@@ -99,6 +99,7 @@ std::optional<scene::NodeKeys> MotionHistory::keys_around(std::size_t object,
   scene::NodeKeys keys{moved_[static_cast<std::size_t>(place_[object])].nodes, &before};
   if (age > 0 && time_s >= before.time_s && !at_age(age - 1).joints[index].rotations.empty())
     keys.after = &at_age(age - 1).joints[index];
+  keys.most_ahead_s = kMostPredicted_s;
   return keys;
 }
 
@@ -119,7 +120,13 @@ std::optional<Mat4> MotionHistory::model_from_node(std::size_t object, const sce
 
 std::vector<MotionHistory::Moved> moved_objects(const PhysicsWorld& world) {
   std::vector<MotionHistory::Moved> moved;
-  for (const PhysicsVehicle& vehicle : world.vehicles()) moved.push_back({vehicle.object, {}});
+  for (const PhysicsVehicle& vehicle : world.vehicles()) {
+    MotionHistory::Moved drawn{vehicle.object, {}};
+    if (vehicle.turning)
+      for (const DrawnPropeller& propeller : vehicle.kind.propellers)
+        drawn.nodes.push_back(propeller.node);
+    moved.push_back(std::move(drawn));
+  }
   for (const PhysicsHuman& human : world.humans()) moved.push_back({human.object, human.nodes});
   for (const PhysicsObject& object : world.objects())
     moved.push_back({object.object, object.joints.nodes});
@@ -135,8 +142,15 @@ std::vector<MotionHistory::Moved> moved_objects(const PhysicsWorld& world) {
 MotionSnapshot motion_of(const PhysicsWorld& world, const sim::Snapshot<PhysicsState>& snapshot) {
   MotionSnapshot out;
   out.time_s = snapshot.time_s;
-  for (const VehicleState& vehicle : snapshot.state.vehicles())
-    out.motions.push_back(motion_of(vehicle));
+  for (std::size_t i = 0; i < world.vehicles().size(); ++i) {
+    const PhysicsVehicle& vehicle = world.vehicles()[i];
+    const VehicleState& state = snapshot.state.vehicles()[i];
+    out.motions.push_back(motion_of(state));
+    if (vehicle.turning)
+      out.joints.push_back(drawn_turns(
+          vehicle.kind.propellers, vehicle.vehicle, state.body, vehicle.water.water_kg_m3,
+          snapshot.state.propellers()[*vehicle.turning], snapshot.time_s));
+  }
   for (std::size_t i = 0; i < world.humans().size(); ++i) {
     const HumanPhysics& state = snapshot.state.humans()[i];
     out.motions.push_back(motion_of(state));

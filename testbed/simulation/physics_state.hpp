@@ -264,6 +264,15 @@ struct TetherState {
   }
 };
 
+// The turns of a vehicle's propellers (propellers.hpp), by thruster, forward positive. Not wrapped,
+// so that two states tell how far they turned between: in a year at 60 a second they are still
+// exact to 1e-6.
+struct PropellerState {
+  std::array<double, rov::kMaxThrusters> revolutions{};
+
+  static void fields(auto&& field, auto& self) { field("revolutions", self.revolutions); }
+};
+
 // The readings of a vehicle's sensors at the end of a part of the newest step, but its last: with
 // sensors faster than the steps, all of their readings stay here until the next step.
 struct EarlierReadings {
@@ -281,22 +290,25 @@ class PhysicsState
     : public sim::Block<VehicleState, HumanPhysics, rov::SensorReadings, rov::NavigationState,
                         ObjectState, sonar::ModemState, ModemTasks, diver::ConditionState,
                         RegulatorState, ThingState, GripState, LimbState, TetherState,
-                        rov::CableNode, rov::BatteryState, EarlierReadings> {
+                        rov::CableNode, rov::BatteryState, EarlierReadings, PropellerState> {
  public:
   PhysicsState() = default;
   // sensing: vehicles that have sensors; navigating: those that fly on what they measure; objects:
   // those that devices move; conditions, regulators: divers whose scene names them; limbs: objects
-  // with limbs; batteries: vehicles whose file names one; earlier: of all vehicles.
+  // with limbs; batteries: vehicles whose file names one; earlier: of all vehicles; propellers:
+  // vehicles whose model has some that turn.
   PhysicsState(std::size_t vehicles, std::size_t humans, std::size_t sensing,
                std::size_t navigating, std::size_t objects = 0, std::size_t modems = 0,
                std::size_t conditions = 0, std::size_t regulators = 0, std::size_t things = 0,
                std::size_t grips = 0, std::size_t limbs = 0, std::size_t tethers = 0,
-               std::size_t tether_nodes = 0, std::size_t batteries = 0, std::size_t earlier = 0)
+               std::size_t tether_nodes = 0, std::size_t batteries = 0, std::size_t earlier = 0,
+               std::size_t propellers = 0)
       : Block({vehicles, humans, sensing, navigating, objects, modems, modems, conditions,
-               regulators, things, grips, limbs, tethers, tether_nodes, batteries, earlier}) {}
+               regulators, things, grips, limbs, tethers, tether_nodes, batteries, earlier,
+               propellers}) {}
   // One of each kind.
   static PhysicsState example() {
-    return PhysicsState(1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1);
+    return PhysicsState(1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1);
   }
 
   std::span<VehicleState> vehicles() { return part<VehicleState>(); }
@@ -331,6 +343,9 @@ class PhysicsState
   // One vehicle's after another's: PhysicsWorld::earlier_readings() finds a vehicle's.
   std::span<EarlierReadings> earlier() { return part<EarlierReadings>(); }
   std::span<const EarlierReadings> earlier() const { return part<EarlierReadings>(); }
+  // For the vehicles whose model has some: PhysicsVehicle::turning finds a vehicle's.
+  std::span<PropellerState> propellers() { return part<PropellerState>(); }
+  std::span<const PropellerState> propellers() const { return part<PropellerState>(); }
   // For the divers whose condition the scene names: PhysicsHuman::condition finds a diver's.
   std::span<diver::ConditionState> conditions() { return part<diver::ConditionState>(); }
   std::span<const diver::ConditionState> conditions() const {
@@ -376,12 +391,14 @@ class PhysicsState
     field("batteries", batteries);
     auto earlier = self.earlier();
     field("earlier", earlier);
+    auto propellers = self.propellers();
+    field("propellers", propellers);
   }
   // The hash covers groups once a live source was asked for, but no numbers of sources, the joints
   // of divers while they are eased, and of the kinds after the first three those that the scene
-  // has.
+  // has, without the last: nothing of the physics reads how far propellers turned.
   std::span<const std::uint64_t> hashed_counts() const {
-    std::size_t kinds = kKinds;
+    std::size_t kinds = kKinds - 1;
     while (kinds > 3 && counts()[kinds - 1] == 0) --kinds;
     return std::span(counts()).first(kinds);
   }

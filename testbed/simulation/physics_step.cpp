@@ -115,7 +115,7 @@ PhysicsState PhysicsWorld::start() const {
   PhysicsState state(vehicles_.size(), humans_.size(), sensing_, navigating_, objects_.size(),
                      modems_.all().size(), conditions_, regulators_, things_.things().size(),
                      things_.grips().size(), limbs_, tethers_.all().size(), tethers_.node_count(),
-                     batteries_, earlier_);
+                     batteries_, earlier_, turning_);
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     state.vehicles()[i].body = vehicles_[i].start;
     if (const auto at = vehicles_[i].battery)
@@ -446,9 +446,12 @@ void PhysicsWorld::end_part(const StepCall& call, std::size_t i, unsigned thread
 void PhysicsWorld::finish_vehicle(const StepCall& call, std::size_t i, unsigned thread) const {
   end_part(call, i, thread);
   add_contact(call.scratch.vehicles[i].contact, call.time.step_s, call.after.vehicles()[i]);
-  if (const auto at = vehicles_[i].battery) {
-    const PhysicsVehicle& vehicle = vehicles_[i];
-    const rov::State& body = call.after.vehicles()[i].body;
+  const PhysicsVehicle& vehicle = vehicles_[i];
+  const rov::State& body = call.after.vehicles()[i].body;
+  if (const auto at = vehicle.turning)
+    call.after.propellers()[*at] = next_propellers(vehicle.vehicle, body, vehicle.water.water_kg_m3,
+                                                   call.time.step_s, call.before.propellers()[*at]);
+  if (const auto at = vehicle.battery) {
     const auto forces_n = rov::thruster_forces(vehicle.vehicle, body, body.held);
     call.after.batteries()[*at] = rov::step_battery(
         *vehicle.file.parameters.battery, call.before.batteries()[*at],

@@ -203,6 +203,7 @@ Status PhysicsWorld::add_vehicle(const scene::Scene& scene, std::size_t index) {
   out.earlier = earlier_in_step(out.file.sensors, step_s_);
   earlier_ += out.earlier;
   if (out.file.parameters.battery) out.battery = batteries_++;
+  if (!kind->propellers.empty() && object.clip < 0) out.turning = turning_++;
   NERITIC_TRY(auto navigation, choose_navigation(scene, object, out.file.sensors));
   if (navigation) out.navigation = VehicleNavigation{std::move(*navigation), navigating_++};
   out.water = {scene.physics->water_kg_m3, out.file.gravity_m_s2,

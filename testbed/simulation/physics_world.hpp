@@ -52,6 +52,8 @@ struct PhysicsVehicle {
   // Of PhysicsState::earlier(); none: no sensor is faster than the steps.
   std::size_t first_earlier = 0, earlier = 0;
   std::optional<std::size_t> battery;  // of PhysicsState::batteries(); none: thrust costs nothing
+  // Of PhysicsState::propellers(); none: the model has none that turn, or its clip moves it.
+  std::optional<std::size_t> turning;
   std::optional<VehicleNavigation> navigation;  // none: flies on its true state
   rov::SensorWater water;                       // around its sensors
 };
@@ -244,6 +246,7 @@ class PhysicsWorld {
   std::size_t limbs_ = 0;                        // objects with limbs
   std::size_t batteries_ = 0;                    // vehicles whose file names one
   std::size_t earlier_ = 0;                      // EarlierReadings of all vehicles
+  std::size_t turning_ = 0;                      // vehicles whose propellers turn
   StreamTable streams_;
   SourceNames sources_;
   PhysicsInputs start_inputs_;

@@ -104,6 +104,9 @@ Result<const VehicleKind*> VehicleKinds::of(const scene::Scene& scene, const sce
   kind.solid.shape = std::move(shape->body);
   kind.top_m = shape->top_m;
   kind.bottom_m = shape->bottom_m;
+  if (object.model >= 0)
+    kind.propellers =
+        drawn_propellers(*scene.models[static_cast<std::size_t>(object.model)], model->vehicle);
   known = std::make_unique<const VehicleKind>(std::move(kind));
   return known.get();
 }

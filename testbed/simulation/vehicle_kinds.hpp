@@ -16,6 +16,7 @@
 #include "rov/vehicle_file.hpp"
 #include "testbed/simulation/body_step.hpp"
 #include "testbed/simulation/instants.hpp"
+#include "testbed/simulation/propellers.hpp"
 
 namespace neritic::testbed {
 
@@ -32,7 +33,8 @@ struct VehicleKind {
   const VehicleModel& model;
   rov::Allocator allocator;  // without the thrusters that have failed at the start
   SolidBody solid;
-  double top_m = 0.0, bottom_m = 0.0;  // of the shape, above the origin
+  double top_m = 0.0, bottom_m = 0.0;      // of the shape, above the origin
+  std::vector<DrawnPropeller> propellers;  // of the model
 };
 
 class VehicleKinds {

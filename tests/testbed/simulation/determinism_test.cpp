@@ -147,7 +147,7 @@ TEST(PhysicsDeterminism, ARecordedDiveWithAPilotReplays) {
 }
 
 TEST(PhysicsDeterminism, TheStateNamesEveryByte) {
-  sim::check_fields_cover(PhysicsState(3, 2, 2, 2, 1, 2, 2, 1, 2, 3, 2, 2, 5, 2, 3));
+  sim::check_fields_cover(PhysicsState(3, 2, 2, 2, 1, 2, 2, 1, 2, 3, 2, 2, 5, 2, 3, 2));
   sim::check_fields_cover(PhysicsInputs(3, 2, 1, 2, 2, 3, 2));
 }
 
