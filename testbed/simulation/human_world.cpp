@@ -42,16 +42,17 @@ double drawn_scale(const scene::Model& model, const PhysicsHuman& human) {
 // blade as long and wide as his fins, of any size of body.
 void find_gear(const scene::Model& model, PhysicsHuman& human) {
   const diver::Gear& gear = human.file.parameters.gear;
-  const auto worn = [&](const char* name, const Vec3& scale) {
+  const auto worn = [&](const char* name, const Vec3& scale, bool swells = false) {
     const int node = node_named(model, name);
     if (node < 0) return;
     human.nodes.push_back(node);
-    human.gear_scales.push_back(scale);
+    human.gear.push_back({scale, swells});
   };
   const Vec3 tank(gear.tanks.empty() ? 0.0 : 1.0), jacket(gear.jacket ? 1.0 : 0.0);
   for (const char* name : {"tank", "regulator"}) worn(name, tank);
-  for (const char* name : {"jacket_pelvis", "jacket_abdomen", "jacket_thorax", "jacket_head"})
-    worn(name, jacket);
+  // Belt and collar stay on the body.
+  for (const char* name : {"jacket_pelvis", "jacket_head"}) worn(name, jacket);
+  for (const char* name : {"jacket_abdomen", "jacket_thorax"}) worn(name, jacket, true);
   const diver::Fins usual, fins = gear.fins.value_or(usual);
   const Vec3 blade(fins.width_m / usual.width_m / human.scale, 1.0,
                    fins.length_m / usual.length_m / human.scale);

@@ -50,6 +50,12 @@ struct Ability {
   std::optional<Vec3> hand_to_m;       // where the right one reaches, in the world
 };
 
+// A node of a diver's gear.
+struct DrawnGear {
+  Vec3 scale{1.0};      // 0 removes what this diver does not wear
+  bool swells = false;  // with the gas in the jacket
+};
+
 // A diver of the scene, prepared.
 struct PhysicsHuman {
   std::string name;
@@ -67,11 +73,10 @@ struct PhysicsHuman {
   std::optional<diver::ButtonRecording> buttons;
   sim::BodyShape shape;  // for contacts: model axes (starboard, up, back) of who swims
   // The joints of the drawn model: its nodes, one a segment, then those of gear; how far its arms
-  // are spread; the diver's size over the model's; and the scale of each node of gear: 0 removes
-  // gear that this diver does not wear.
+  // are spread; the diver's size over the model's; and each node of gear.
   std::vector<int> nodes;
   double arms_spread_rad = 0.0, scale = 1.0;
-  std::vector<Vec3> gear_scales;
+  std::vector<DrawnGear> gear;
   std::optional<PhysicsCondition> condition;
   std::optional<PhysicsRegulator> regulator;
   HumanPhysics start;

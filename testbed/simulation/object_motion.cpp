@@ -1,6 +1,9 @@
 #include "testbed/simulation/object_motion.hpp"
 
+#include <cmath>
+
 #include "diver/frames.hpp"
+#include "diver/human_step.hpp"
 #include "rov/frames.hpp"
 #include "testbed/simulation/human_world.hpp"
 
@@ -11,6 +14,25 @@ namespace {
 Motion moving(const Pose& world_from_object, const Quat& ned_from_body, const Vec6& velocity) {
   return {world_from_object, world_from_ned(ned_from_body * velocity.linear()),
           world_from_ned(ned_from_body * velocity.angular())};
+}
+
+// How much wider and deeper the drawn jacket is with its gas than empty, as it was built. The gas
+// lies about it in a layer of even thickness d: in section the jacket is an ellipse of half axes
+// a = 0.195 and b = 0.146 m, over h = 0.33 m of the trunk's height (bcd() of
+// tools/assets/diver_gear.py), and
+//   V = pi h ((a + d)(b + d) - a b)
+// 18 litres are d = 45 mm. In metres of the model.
+Vec3 swollen_jacket(const PhysicsHuman& human, const diver::HumanState& state) {
+  constexpr double kHalfWidth_m = 0.195, kHalfDepth_m = 0.146, kHeight_m = 0.33;
+  if (!(human.body.jacket.capacity_m3 > 0.0)) return Vec3(1.0);
+  const double gas_m3 =
+      diver::jacket_gas(human.body, state.life.jacket_moles, diver::thorax_place(human.body, state))
+          .volume_m3;
+  const double scaled_m3 = gas_m3 / (human.scale * human.scale * human.scale);
+  constexpr double kSum_m = kHalfWidth_m + kHalfDepth_m;
+  const double d_m =
+      0.5 * (std::sqrt(kSum_m * kSum_m + 4.0 * scaled_m3 / (kPi * kHeight_m)) - kSum_m);
+  return {1.0 + d_m / kHalfWidth_m, 1.0, 1.0 + d_m / kHalfDepth_m};
 }
 
 }  // namespace
@@ -72,9 +94,10 @@ scene::NodeKey drawn_joints(const PhysicsHuman& human, const HumanPhysics& state
   key.scales[diver::kAbdomen] = wider;
   for (const diver::Segment on_chest : {diver::kHead, diver::kLeftUpperArm, diver::kRightUpperArm})
     key.scales[on_chest] = 1.0 / wider;
-  for (const Vec3& gear : human.gear_scales) {
+  const Vec3 swollen = swollen_jacket(human, state.human);
+  for (const DrawnGear& gear : human.gear) {
     key.rotations.push_back(Quat(1.0, 0.0, 0.0, 0.0));
-    key.scales.push_back(gear);
+    key.scales.push_back(gear.swells ? gear.scale * swollen : gear.scale);
   }
   return key;
 }

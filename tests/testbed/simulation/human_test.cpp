@@ -143,6 +143,39 @@ TEST(HumanDive, WhatIsDrawnIsTheBodyOfThePhysics) {
   EXPECT_LT(breath, 0.15);
 }
 
+// The drawn jacket: as built without gas, and by a layer of 45 mm wider on each side with 18
+// litres, which is the gas's volume about an ellipse of 0.195 and 0.146 m, 0.33 m high.
+TEST(HumanDive, TheDrawnJacketSwellsWithItsGas) {
+  const TestDive dive = dive_of(kStillWater + diver_text("position_m = [0, -12, 0]\n"));
+  const PhysicsHuman& human = dive.world->humans()[0];
+  const scene::Model& model =
+      *dive.scene.models[static_cast<std::size_t>(dive.scene.objects[human.object].model)];
+  const auto scale_of = [&](const char* name, double gas_m3) {
+    HumanPhysics state = human.start;
+    state.human.life.jacket_moles =
+        diver::jacket_moles(human.body, gas_m3, diver::thorax_place(human.body, state.human));
+    const scene::NodeKey key = drawn_joints(human, state, 0.0);
+    for (std::size_t i = 0; i < human.nodes.size(); ++i)
+      if (model.nodes[static_cast<std::size_t>(human.nodes[i])].name == name) return key.scales[i];
+    return Vec3(0.0);
+  };
+  const double size = human.scale, full_m3 = human.body.jacket.capacity_m3;
+  double before_m = 0.0;
+  for (const double share : {0.0, 0.1, 0.5, 0.9, 1.0}) {
+    const Vec3 thorax = scale_of("jacket_thorax", share * full_m3);
+    EXPECT_EQ(thorax, scale_of("jacket_abdomen", share * full_m3));
+    EXPECT_EQ(scale_of("jacket_pelvis", share * full_m3), Vec3(1.0));
+    EXPECT_EQ(thorax.y, 1.0);
+    const double wide_m = 0.195 * (thorax.x - 1.0), deep_m = 0.146 * (thorax.z - 1.0);
+    EXPECT_NEAR(wide_m, deep_m, 1e-12);
+    const double more_m3 = kPi * 0.33 * (0.195 * 0.146) * (thorax.x * thorax.z - 1.0);
+    EXPECT_NEAR(more_m3 * size * size * size, share * full_m3, 1e-3 * full_m3) << share;
+    EXPECT_GE(wide_m, before_m);
+    before_m = wide_m;
+  }
+  EXPECT_NEAR(before_m * size, 0.045, 0.003);
+}
+
 // The drawn diver has the file's height and exactly the file's gear.
 TEST(HumanDive, IsDrawnAtItsHeightWithItsGear) {
   const test::ScratchFolder folder;
