@@ -143,6 +143,13 @@ vec4 mean_bubble_light(float radius) {
   return sum;
 }
 
+// Share of a spot's opacity in its streak, which has as much light in all: the spot's two halves and a bar between
+// them. disk, across: of the spot's profile, the integral over it in squared radii and through its middle, across the
+// streak, in radii. radius and streak in pixels.
+float streak_share(float disk, float across, float radius, float streak) {
+  return disk * radius / (disk * radius + across * streak);
+}
+
 void main() {
   int view = kMultiview ? gl_ViewIndex : 0;
   Particle particle = particles[gl_VertexIndex / 3];
@@ -183,7 +190,11 @@ void main() {
       0.5 * kLensOpening_m * abs(1.0 / now.w - 1.0 / kLensFocus_m) / length(views[view].ray_dx);
   float radius = kKind == kParticleSilt ? own : sqrt(own * own + blur * blur + 0.56);
   // A spot's light is spread over its blur and its streak; snow's soft disk has half the light of a flat one.
-  float share = kKind == kParticleSilt ? 1.0 : (kKind == kParticleSnow ? 2.0 : 1.0) * own * own / (radius * radius) * (radius * kPi / (radius * kPi + 2.0 * streak));
+  float share = kKind == kParticleSilt ? 1.0 : (kKind == kParticleSnow ? 2.0 : 1.0) * own * own / (radius * radius);
+  // Integrals of the fragment stages' profiles, with rho the way from the middle over the radius: of snow, 1 - rho^2,
+  // pi / 2 over the disk and 4 / 3 across; of silt, (1 - rho^2)^2, pi / 3 and 16 / 15.
+  if (!kBubbles) share *= streak_share(kKind == kParticleSnow ? kPi / 2.0 : kPi / 3.0,
+                                       kKind == kParticleSnow ? 4.0 / 3.0 : 16.0 / 15.0, radius, streak);
   vec3 albedo = kKind == kParticleSilt ? kSiltAlbedo : kSnowAlbedo;
   Sight sight = look_through(light.origin_depth_m - views[view].eye.y, -to_eye, distance_m, 1.0, skylight);
   float lit = beam_at(particle.position, max(distance_m * length(views[view].ray_dx), 2.0 * particle.radius_m));
@@ -202,6 +213,9 @@ void main() {
     seen = max(seen, min(0.9 / radius, 1.0));
     upright = vec3(cos(tilt) * axis.x - sin(tilt) * axis.y, sin(tilt) * axis.x + cos(tilt) * axis.y,
                    seen);
+    // An ellipse, whose edge runs from full to none over a pixel and a half: the ramp adds 3 / 16 squared pixels.
+    float across = 2.0 / length(vec2(dot(along, upright.xy), (along.x * upright.y - along.y * upright.x) / seen));
+    share *= streak_share(kPi * seen * (1.0 + 0.1875 / (radius * radius)), across, radius, streak);
     if (kKind == kParticleBubbleSpot) body = mean_bubble_light(radius);
   } else {
     vec3 arriving = radiance_of(particle.position, to_eye, albedo, skylight, lit) * sight.transmittance;

@@ -101,6 +101,35 @@ TEST_F(ParticleShaftsGpu, SnowUnderWavesGlittersAboutTheSameMean) {
             1e-3);
 }
 
+// Flakes that drift through the picture while the exposure lasts, small ones, whose opacity no cut
+// limits.
+TEST_F(ParticleShaftsGpu, AStreakOfSnowHasTheLightOfItsFlake) {
+  const auto sum = [&](double density_m3, double shutter_s) {
+    scene::Scene scene = scene_of({});
+    scene.water->scattering = false;
+    scene.water->snow = scene::Snow{.density_m3 = density_m3,
+                                    .diameter_m = 1e-3,
+                                    .spread = 0.0,
+                                    .drift_m_s = Vec3(1.0, 0.0, 0.0),
+                                    .shutter_s = shutter_s};
+    const auto session = Session::create(device(), std::move(scene));
+    EXPECT_TRUE(session.ok());
+    FrameRequest request;
+    request.cameras = {0};
+    auto result = (*session)->render(request);
+    EXPECT_TRUE(result.ok());
+    const ImageF32& linear = result->cameras[0].eyes[0].linear;
+    double light = 0.0;
+    for (std::uint32_t y = 0; y < 90; ++y)
+      for (std::uint32_t x = 0; x < 160; ++x) light += linear.at(x, y, 1);
+    return light;
+  };
+  const double none = sum(1e-3, 0.0), still = sum(3000.0, 0.0) - none;
+  ASSERT_GT(still, none);
+  for (const double shutter_s : {0.01, 0.05, 0.1})
+    EXPECT_NEAR((sum(3000.0, shutter_s) - none) / still, 1.0, 0.05) << shutter_s;
+}
+
 // Their number differs with each frame. A plan of its own for each took a tenth of a headset's
 // frame.
 TEST_F(ParticleShaftsGpu, FramesOfAnotherNumberOfParticlesShareOnePlan) {
