@@ -33,8 +33,9 @@ Caustics read_caustics(TableReader& reader) {
     }
     caustics.waves.push_back({row[0], row[1], radians(row[2])});
   }
-  if (caustics.waves.size() > kMostCausticWaves)
-    reader.refuse("waves", fmt::format("at most {} rows", kMostCausticWaves));
+  if (caustics.waves.size() > kMostCausticWaves || (reader.has("waves") && caustics.waves.empty()))
+    reader.refuse("waves", fmt::format("1 to {} rows [amplitude_m, wavelength_m, direction_deg]",
+                                       kMostCausticWaves));
   caustics.wind_m_s = reader.number("wind_m_s", caustics.wind_m_s, {0, 15, false, false, "m/s"});
   caustics.direction_rad = radians(reader.number("direction_deg", 0.0, kAnyTurn));
   return caustics;

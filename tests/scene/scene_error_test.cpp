@@ -52,6 +52,9 @@ INSTANTIATE_TEST_SUITE_P(
         WrongLine{"[sun]\nazimuth_deg = inf", "s.toml:2: sun.azimuth_deg: found inf; " TURN},
         WrongLine{"[sun]\nazimuth_deg = 2024-01-01",
                   "s.toml:2: sun.azimuth_deg: found a date or time; " TURN},
+        WrongLine{"[sun.caustics]\nwaves = []",
+                  "s.toml:2: sun.caustics.waves: found []; accepted: 1 to 32 rows "
+                  "[amplitude_m, wavelength_m, direction_deg]"},
         WrongLine{"[sun]\nintensity = 'high'",
                   "s.toml:2: sun.intensity: found \"high\"; accepted: a number in [0, 1000]"},
         WrongLine{"[sun]\nelevation = 3",
