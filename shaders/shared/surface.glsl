@@ -2,6 +2,7 @@
 // Fresnel by Schlick 1994), under sun, diffuse water light and lamps. GLSL only.
 #ifndef NERITIC_SURFACE_GLSL
 #define NERITIC_SURFACE_GLSL
+#include "shared/even.glsl"
 #include "shared/visibility.h"
 #include "shared/water.glsl"
 
@@ -25,8 +26,8 @@ float dielectric_f0(Surface s) {
 }
 
 // Share of even light that GGX sends on where its Fresnel term is 1 (single scattering, mean over all
-// directions): 0.96 at roughness 0.1, 0.60 at 0.8, 0.41 at 1, by quadrature. That of 0.8 stands for all, since
-// what lies under water is rough.
+// directions): 0.96 at roughness 0.1, 0.60 at 0.8, 0.41 at 1, by quadrature. That of 0.8 stands for all that is no
+// metal: in water such a surface mirrors under a hundredth of the light.
 const float kEvenReflectance = 0.6;
 // Share of the light from above that comes back from below. In water an irradiance reflectance of some
 // percent (Jerlov 1976), in shallow places the sand's; in air the albedo of dry, light ground (soils 0.05 to
@@ -39,6 +40,13 @@ vec2 even_reflectance(float roughness, float n_v) {
   float p = 1.0 - n_v;
   float grazing = p * p * p * p * p / (1.0 + 20.0 * r2 * roughness);
   return vec2(1.0 - r2 * (0.32 + 0.47 * roughness * n_v) - grazing, grazing);
+}
+
+// Share of even light that a metal of reflectance f0 sends on, with what bounces on between the facets until it
+// leaves: all of it where f0 is 1 (Turquin 2019, "Practical multiple scattering compensation for microfacet models").
+vec3 even_metal(vec3 f0, float roughness, float n_v) {
+  vec2 once = even_reflectance(roughness, n_v);
+  return (f0 * once.x + once.y) * (1.0 + f0 * (1.0 / (once.x + once.y) - 1.0));
 }
 
 // BRDF times cosine. spread: half-angle of the source in radians; a highlight is no narrower.
@@ -82,12 +90,23 @@ vec3 transmit_light(Surface s, vec3 to_light) {
   return s.albedo * ((1.0 - s.metallic) * s.through * max(-dot(s.normal, to_light), 0.0) / kPi);
 }
 
-// Even light about a surface with this normal, over pi times what it sends on: from above, and from the bottom.
-vec3 even_light(vec3 normal, vec3 irradiance, vec3 direct, float depth_m, Seen seen) {
-  // Diffuse light comes mostly from above.
+// Share from above of the even light about a surface whose normal has this height. Diffuse light comes mostly from
+// above.
+float from_above(float normal_y) {
+  float up = 0.5 + 0.5 * normal_y;
+  return up * up * (3.0 - 2.0 * up);
+}
+
+// The same of what a metal mirrors: if smooth, of light from one direction. The cosine about a normal lets 2/3 of a
+// linear term pass (Ramamoorthi and Hanrahan 2001), and from_above has 0.6 of one: a direction's light has 0.9.
+float from_above_mirrored(vec3 normal, vec3 to_eye, float n_v, float roughness) {
+  float mirrored_y = 2.0 * n_v * normal.y - to_eye.y;
+  return mix(clamp(0.5 + 0.9 * mirrored_y, 0.0, 1.0), from_above(normal.y), roughness * roughness);
+}
+
+// Even light of which the share `above` comes from above, the rest from below: its irradiance, and pi times its radiance.
+vec3 even_light(float above, vec3 irradiance, vec3 direct, float depth_m, Seen seen) {
   float from_below = light_has(kLightWater) ? kWaterFromBelow : kGroundFromBelow;
-  float up = 0.5 + 0.5 * normal.y;
-  float above = up * up * (3.0 - 2.0 * up);
   if (light_has(kLightAmbient))
     return irradiance * ((1.0 - direct) * above * seen.sky + (from_bottom(depth_m) + 0.02) * (1.0 - above));
   return irradiance * (1.0 - direct) * mix(from_below, 1.0, above);
@@ -109,10 +128,16 @@ vec3 shade_surface(Surface s, vec3 to_eye, Seen seen) {
     if (light_has(kLightCaustics)) beam *= seen.caustic;
     radiance += beam * reflect_light(s, to_eye, light.to_sun, sun_spread);
     radiance += beam * transmit_light(s, light.to_sun);
-    vec3 diffuse_color = s.albedo * (1.0 - s.metallic) + mix(vec3(dielectric_f0(s)), s.albedo, s.metallic) * kEvenReflectance;
-    vec3 around = even_light(s.normal, irradiance, direct, depth_m, seen);
-    if (light_has(kLightThin)) around = mix(around, even_light(-s.normal, irradiance, direct, depth_m, seen), s.through);
-    radiance += around * s.occlusion * seen.around * seen.skylight * diffuse_color / kPi;
+    vec3 around = even_light(from_above(s.normal.y), irradiance, direct, depth_m, seen);
+    if (light_has(kLightThin))
+      around = mix(around, even_light(from_above(-s.normal.y), irradiance, direct, depth_m, seen), s.through);
+    around *= (s.albedo + dielectric_f0(s) * kEvenReflectance) * (1.0 - s.metallic);
+    if (for_any(s.metallic > 0.0)) {
+      float n_v = clamp(dot(s.normal, to_eye), 0.0, 1.0);
+      float above = from_above_mirrored(s.normal, to_eye, n_v, s.roughness);
+      around += even_light(above, irradiance, direct, depth_m, seen) * even_metal(s.albedo, s.roughness, n_v) * s.metallic;
+    }
+    radiance += around * s.occlusion * seen.around * seen.skylight / kPi;
   }
   NERITIC_OVER_LAMPS {
     vec3 to_lamp = light.lamps[i].position - s.position;

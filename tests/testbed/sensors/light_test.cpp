@@ -101,6 +101,72 @@ TEST_F(Light, FlatGroundHidesNothingFromItself) {
         << x;
 }
 
+// A sphere under an even sky, over a bottom of this colour; linear light of the picture's middle
+// column.
+std::vector<double> sphere_under_an_even_sky(gpu::Device& device, float metallic, float roughness,
+                                             float bottom) {
+  scene::Scene scene;
+  scene.path = "test";
+  scene.sun = scene::Sun{.elevation_rad = radians(90.0), .overcast = 1.0};
+  scene.ambient = scene::Ambient{.bottom_color = Vec3f(bottom)};
+  scene.water = scene::Water{.type = "I", .scattering = false};
+  scene::Model sphere = scene::make_sphere(0.5, 96);
+  scene::Material paint;
+  paint.metallic = metallic;
+  paint.roughness = roughness;
+  paint.base_color = Vec4f(1.0f);
+  sphere.materials = {paint};
+  sphere.meshes[0].primitives[0].material = 0;
+  scene.models.push_back(std::make_shared<scene::Model>(std::move(sphere)));
+  scene::Object object;
+  object.name = "sphere";
+  object.model = 0;
+  object.class_id = object.instance = 1;
+  object.mount.pose.position_m = {0.0, -5.0, -3.0};
+  scene.objects.push_back(object);
+  scene::Camera camera;
+  camera.name = "eye";
+  camera.width = camera.height = 64;
+  camera.vertical_fov_rad = radians(20.0);
+  camera.exposure.fixed_ev = 10.0;
+  camera.terms.linear = true;
+  camera.mount.pose.position_m = {0.0, -5.0, 0.0};
+  scene.cameras.push_back(camera);
+  const auto result = render_one(device, std::move(scene), nullptr);
+  EXPECT_TRUE(result.ok());
+  std::vector<double> column;
+  if (!result.ok()) return column;
+  for (std::uint32_t y = 0; y < 64; ++y)
+    column.push_back(result->cameras[0].eyes[0].linear.at(32, y, 1));
+  return column;
+}
+
+// White things in even light have its radiance, whatever they are of.
+TEST_F(Light, AnEvenFurnaceStaysEven) {
+  const std::vector<double> diffuse = sphere_under_an_even_sky(device(), 0.0f, 1.0f, 1.0f);
+  ASSERT_EQ(diffuse.size(), 64u);
+  ASSERT_GT(diffuse[32], 1.0);
+  for (const float roughness : {0.0f, 0.2f, 0.5f, 1.0f}) {
+    const std::vector<double> metal = sphere_under_an_even_sky(device(), 1.0f, roughness, 1.0f);
+    ASSERT_EQ(metal.size(), 64u);
+    for (std::size_t y = 5; y < 60; y += 6)
+      EXPECT_NEAR(metal[y] / diffuse[y], 1.0, 0.03) << roughness << ' ' << y;
+  }
+}
+
+// Where a sphere's normal is tilted by 45 degrees it mirrors the zenith, or the dark bottom; if
+// rough, what lies about the normal.
+TEST_F(Light, SmoothMetalMirrorsWhatIsAboveAndBelow) {
+  const std::vector<double> smooth = sphere_under_an_even_sky(device(), 1.0f, 0.0f, 0.0f);
+  const std::vector<double> rough = sphere_under_an_even_sky(device(), 1.0f, 1.0f, 0.0f);
+  ASSERT_EQ(smooth.size() + rough.size(), 128u);
+  // Seen from 3 m the sphere's outline is 30 pixels from the middle, that of such a normal
+  // about 22.
+  EXPECT_GT(smooth[10], 1.05 * rough[10]);
+  EXPECT_LT(smooth[53], 0.5 * rough[53]);
+  EXPECT_NEAR(smooth[31] + smooth[32], rough[31] + rough[32], 0.05 * (rough[31] + rough[32]));
+}
+
 TEST_F(Light, WhatIsNotNamedIsNotInTheGraph) {
   scene::Scene scene = floor_and_slab(true);
   std::string plan;
