@@ -131,13 +131,14 @@ vec3 shade_surface(Surface s, vec3 to_eye, Seen seen) {
     vec3 around = even_light(from_above(s.normal.y), irradiance, direct, depth_m, seen);
     if (light_has(kLightThin))
       around = mix(around, even_light(from_above(-s.normal.y), irradiance, direct, depth_m, seen), s.through);
-    around *= (s.albedo + dielectric_f0(s) * kEvenReflectance) * (1.0 - s.metallic);
+    vec3 plain_color = (s.albedo + dielectric_f0(s) * kEvenReflectance) * (1.0 - s.metallic);
+    radiance += around * s.occlusion * seen.around * seen.skylight * plain_color / kPi;
     if (for_any(s.metallic > 0.0)) {
       float n_v = clamp(dot(s.normal, to_eye), 0.0, 1.0);
       float above = from_above_mirrored(s.normal, to_eye, n_v, s.roughness);
-      around += even_light(above, irradiance, direct, depth_m, seen) * even_metal(s.albedo, s.roughness, n_v) * s.metallic;
+      vec3 mirrored = even_light(above, irradiance, direct, depth_m, seen) * even_metal(s.albedo, s.roughness, n_v) * s.metallic;
+      radiance += mirrored * s.occlusion * seen.around * seen.skylight / kPi;
     }
-    radiance += around * s.occlusion * seen.around * seen.skylight / kPi;
   }
   NERITIC_OVER_LAMPS {
     vec3 to_lamp = light.lamps[i].position - s.position;
