@@ -1,5 +1,5 @@
-// What a device's driver did to make pipelines, so that a program can tell whether it waited for a
-// compiler. Any thread.
+// Counts the pipelines that a device's driver has made, and their time: they tell a program whether
+// it waited for a compiler. Any thread.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,6 @@
-// Whether a mesh is the skin of solids, or of sheets with two sides: a pass that draws both sides of sheets need not draw its
-// back faces for an eye outside it. Mesh frame, metres. Pure function; any thread.
+// Whether a mesh is the skin of solids, or of sheets with two sides: a pass that draws both sides
+// of sheets need not draw its back faces for an eye outside it. Mesh frame, metres. Pure function;
+// any thread.
 #pragma once
 
 #include <cstdint>

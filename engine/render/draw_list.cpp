@@ -129,7 +129,7 @@ class DrawListBuilder {
     }
   }
 
-  // What is seen of a run of a group's appearances, and its heights (DrawList::lowest_m).
+  // The visible ones of a run of a group's appearances, and their heights (DrawList::lowest_m).
   struct Looked {
     std::vector<Seen> seen;
     double lowest_m = 0.0, highest_m = 0.0;
@@ -139,7 +139,7 @@ class DrawListBuilder {
   std::span<const Looked> look_at(std::uint32_t g) {
     const DrawGroup& group = gpu_scene_.groups()[g];
     const std::span<const Appearance> all(group.appearances);
-    // What deforms tells how much of it is drawn, one after the other.
+    // Deforming meshes write into options_.deform_need: one thread looks at them.
     const std::size_t ranges =
         group.primitive.deforms() ? 1 : ranges_of(all.size(), kLeastLookedAt);
     if (looked_.size() < ranges) looked_.resize(ranges);
@@ -357,7 +357,7 @@ class DrawListBuilder {
     double near_m;
   };
   std::vector<Eye> eyes_;
-  // Of a group; kept to allocate nothing for the next.
+  // Buffers of one group; kept, so that the next group allocates nothing.
   std::vector<Looked> looked_;
   std::vector<Key> keys_;
   std::vector<const Seen*> sorted_;

@@ -1,10 +1,9 @@
 #include "engine/render/gpu_scene.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <span>
-#include <thread>
 
+#include "engine/core/parallel.hpp"
 #include "engine/render/closed_surface.hpp"
 #include "engine/render/gpu_scene_geometry.hpp"
 #include "engine/render/gpu_scene_materials.hpp"
@@ -104,16 +103,7 @@ class GpuSceneBuilder {
       for (const scene::Mesh& mesh : model->meshes)
         for (const scene::Primitive& p : mesh.primitives) all.push_back(&p);
     std::vector<PreparedMesh> out(all.size());
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-      for (std::size_t i = next++; i < all.size(); i = next++) out[i] = prepare_mesh(*all[i]);
-    };
-    std::vector<std::thread> helpers;
-    const std::size_t threads = std::min<std::size_t>(
-        std::max(1u, std::thread::hardware_concurrency()), std::max<std::size_t>(all.size(), 1));
-    for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back(work);
-    work();
-    for (std::thread& helper : helpers) helper.join();
+    each_on_cores(all.size(), [&](std::size_t i) { out[i] = prepare_mesh(*all[i]); });
     return out;
   }
 

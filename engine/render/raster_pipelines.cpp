@@ -8,7 +8,7 @@
 namespace neritic::render {
 namespace {
 
-// What depth alone needs.
+// The positions of vertices, which a depth map reads alone.
 gpu::VertexStream place_stream() {
   return {sizeof(shared::VertexPosition),
           {{0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(shared::VertexPosition, position)}},

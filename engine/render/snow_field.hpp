@@ -46,7 +46,7 @@ class SnowField {
     std::uint64_t used = 0;  // the call that saw it last
   };
 
-  // What all grains of a call have in common; lengths from the point that is looked from.
+  // Values that all grains of a call share; lengths are from the point that is looked from.
   struct Water {
     Water(const scene::Snow& snow, const Vec3& center_m, double time_s, double share);
     double cell_m, half_m, widest_m;  // a cell's side, half its diagonal, what grains stick out
@@ -80,7 +80,7 @@ class SnowField {
   std::unordered_map<Place, Cell, HashOf> cells_;
   double density_m3_ = -1.0, diameter_m_ = 0.0, spread_ = 0.0;
   std::uint64_t seed_ = 0, calls_ = 0;
-  // Of the newest find.
+  // Results of the newest find().
   std::vector<Found> found_, before_;  // in the order of their places; of the find before
   std::vector<Turn> turns_;            // from far to near
   std::size_t placed_ = 0;             // turns

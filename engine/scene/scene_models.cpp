@@ -1,13 +1,11 @@
 // Loads the models of a scene: each distinct file, shape and terrain once, several at a time. The
 // order of the result is that of first use, whatever the threads did. Called from one thread.
 #include <algorithm>
-#include <atomic>
 #include <map>
-#include <system_error>
-#include <thread>
 
 #include "engine/core/clock.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/parallel.hpp"
 #include "engine/scene/gltf_loader.hpp"
 #include "engine/scene/image_file.hpp"
 #include "engine/scene/scene_draft.hpp"
@@ -129,21 +127,8 @@ std::vector<std::optional<Result<Model>>> load_bases(
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return bytes[a] > bytes[b]; });
   std::vector<std::optional<Result<Model>>> results(bases.size());
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < order.size(); i = next++)
-      results[order[i]].emplace(load_and_say(*bases[order[i]]));
-  };
-  std::vector<std::thread> helpers;
-  const std::size_t threads =
-      std::min<std::size_t>(std::max(1u, std::thread::hardware_concurrency()), bases.size());
-  try {
-    for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back(work);
-  } catch (const std::system_error&) {
-    // No thread to be had: this one does the work.
-  }
-  work();
-  for (std::thread& helper : helpers) helper.join();
+  each_on_cores(order.size(),
+                [&](std::size_t i) { results[order[i]].emplace(load_and_say(*bases[order[i]])); });
   return results;
 }
 

@@ -447,16 +447,17 @@ void PhysicsWorld::finish_vehicle(const StepCall& call, std::size_t i, unsigned 
   end_part(call, i, thread);
   add_contact(call.scratch.vehicles[i].contact, call.time.step_s, call.after.vehicles()[i]);
   const PhysicsVehicle& vehicle = vehicles_[i];
+  if (!vehicle.turning && !vehicle.battery) return;
   const rov::State& body = call.after.vehicles()[i].body;
+  const auto all_n = rov::thruster_forces(vehicle.vehicle, body, body.held);
+  const auto forces_n = std::span(all_n).first(vehicle.vehicle.thruster_count);
   if (const auto at = vehicle.turning)
-    call.after.propellers()[*at] = next_propellers(vehicle.vehicle, body, vehicle.water.water_kg_m3,
-                                                   call.time.step_s, call.before.propellers()[*at]);
-  if (const auto at = vehicle.battery) {
-    const auto forces_n = rov::thruster_forces(vehicle.vehicle, body, body.held);
+    call.after.propellers()[*at] =
+        next_propellers(vehicle.vehicle, forces_n, vehicle.water.water_kg_m3, call.time.step_s,
+                        call.before.propellers()[*at]);
+  if (const auto at = vehicle.battery)
     call.after.batteries()[*at] = rov::step_battery(
-        *vehicle.file.parameters.battery, call.before.batteries()[*at],
-        std::span(forces_n).first(vehicle.vehicle.thruster_count), call.time.step_s);
-  }
+        *vehicle.file.parameters.battery, call.before.batteries()[*at], forces_n, call.time.step_s);
 }
 
 void PhysicsWorld::finish_human(const StepCall& call, std::size_t k, unsigned thread) const {

@@ -52,7 +52,7 @@ struct PhysicsVehicle {
   // Of PhysicsState::earlier(); none: no sensor is faster than the steps.
   std::size_t first_earlier = 0, earlier = 0;
   std::optional<std::size_t> battery;  // of PhysicsState::batteries(); none: thrust costs nothing
-  // Of PhysicsState::propellers(); none: the model has none that turn, or its clip moves it.
+  // Index in PhysicsState::propellers(); none: no propeller of the model turns, or a clip moves it.
   std::optional<std::size_t> turning;
   std::optional<VehicleNavigation> navigation;  // none: flies on its true state
   rov::SensorWater water;                       // around its sensors

@@ -52,11 +52,10 @@ std::vector<DrawnPropeller> drawn_propellers(const scene::Model& model,
   return out;
 }
 
-PropellerState next_propellers(const rov::Vehicle& vehicle, const rov::State& body,
+PropellerState next_propellers(const rov::Vehicle& vehicle, std::span<const double> forces_n,
                                double water_kg_m3, double dt_s, const PropellerState& before) {
-  const auto forces_n = rov::thruster_forces(vehicle, body, body.held);
   PropellerState after = before;
-  for (std::size_t i = 0; i < vehicle.thruster_count; ++i)
+  for (std::size_t i = 0; i < forces_n.size(); ++i)
     after.revolutions[i] +=
         dt_s * rov::propeller_hz(vehicle.thrusters[i], forces_n[i], water_kg_m3);
   return after;

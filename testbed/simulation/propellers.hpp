@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/scene/model.hpp"
@@ -26,8 +27,8 @@ struct DrawnPropeller {
 std::vector<DrawnPropeller> drawn_propellers(const scene::Model& model,
                                              const rov::Vehicle& vehicle);
 
-// After a step of dt_s that ended in this state of the vehicle.
-PropellerState next_propellers(const rov::Vehicle& vehicle, const rov::State& body,
+// After a step of dt_s that ended with these forces, one a thruster.
+PropellerState next_propellers(const rov::Vehicle& vehicle, std::span<const double> forces_n,
                                double water_kg_m3, double dt_s, const PropellerState& before);
 
 // The nodes of these propellers, in their order.

@@ -283,6 +283,13 @@ TEST(Snow, IsFiniteFarOutAndNoneIsAboveTheWater) {
       }
 }
 
+scene::Scene with_object_at(const Vec3& place_m) {
+  scene::Scene scene;
+  scene.objects.resize(1);
+  scene.objects[0].mount.pose.position_m = place_m;
+  return scene;
+}
+
 TEST(Bubbles, RiseAsMendelsonSays) {
   // For 1 cm and 4 cm in diameter; in contaminated water of small ones Clift, Grace and Weber 1978,
   // fig. 7.3.
@@ -292,9 +299,7 @@ TEST(Bubbles, RiseAsMendelsonSays) {
 }
 
 TEST(Bubbles, GrowRiseAndEndAtTheSurfaceTheSameEachTime) {
-  scene::Scene scene;
-  scene.objects.resize(1);
-  scene.objects[0].mount.pose.position_m = Vec3(1.0, -6.0, 2.0);
+  const scene::Scene scene = with_object_at(Vec3(1.0, -6.0, 2.0));
   const scene::MotionSource motion(scene);
   scene::BubbleSource source;
   source.object = 0;
@@ -326,9 +331,7 @@ TEST(Bubbles, GrowRiseAndEndAtTheSurfaceTheSameEachTime) {
 }
 
 TEST(Bubbles, AreTheSameWhetherTheirBreathsAreKept) {
-  scene::Scene scene;
-  scene.objects.resize(1);
-  scene.objects[0].mount.pose.position_m = Vec3(1.0, -30.0, 2.0);
+  const scene::Scene scene = with_object_at(Vec3(1.0, -30.0, 2.0));
   const scene::MotionSource motion(scene);
   scene::BubbleSource source;
   source.object = 0;
@@ -351,9 +354,7 @@ TEST(Bubbles, AreTheSameWhetherTheirBreathsAreKept) {
 }
 
 TEST(Bubbles, AViewGetsThoseInItsSight) {
-  scene::Scene scene;
-  scene.objects.resize(1);
-  scene.objects[0].mount.pose.position_m = Vec3(1.0, -30.0, 2.0);
+  const scene::Scene scene = with_object_at(Vec3(1.0, -30.0, 2.0));
   const scene::MotionSource motion(scene);
   scene::BubbleSource source;
   source.object = 0;
@@ -382,10 +383,8 @@ TEST(Bubbles, AViewGetsThoseInItsSight) {
 }
 
 TEST(Bubbles, CarryTheGasThatTheSourceNamesAsTheyBreakUp) {
-  scene::Scene scene;
-  scene.objects.resize(1);
   // So deep that they hardly grow.
-  scene.objects[0].mount.pose.position_m = Vec3(0.0, -2e5, 0.0);
+  const scene::Scene scene = with_object_at(Vec3(0.0, -2e5, 0.0));
   const scene::MotionSource motion(scene);
   scene::BubbleSource source;
   source.object = 0;

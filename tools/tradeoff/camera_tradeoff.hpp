@@ -23,9 +23,9 @@ std::uint64_t steps(const CameraTradeoffOptions& options);
 struct CameraPoint {
   std::string knob;  // or "level"
   std::string value;
-  double ms = 0.0;         // of the device's passes, the least of several
-  double error = 0.0;      // root mean square, 1 from black to white
-  double flip = 0.0;       // flip_error, 0 to 1
+  double ms = 0.0;     // of the device's passes, the least of several
+  double error = 0.0;  // root mean square, 1 from black to white
+  double flip = 0.0;   // flip_error, 0 to 1
 };
 
 struct CameraTradeoff {

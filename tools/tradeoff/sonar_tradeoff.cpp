@@ -233,9 +233,10 @@ Status measure_kinds(gpu::Device& device, const scene::Scene& scene,
 std::uint64_t plain_steps(const SonarTradeoffOptions& options) {
   if (!options.kind.empty()) return 0;
   const std::uint64_t sweeps =
-      std::size(kGathers) *
-      (volume_scales(options.quick).size() + bins_of(options.quick).size() - 1 + std::size(kCodings));
-  return options.scene.empty() ? sweeps + 1 : 2 * (sweeps + 1) + volume_scales(options.quick).size();
+      std::size(kGathers) * (volume_scales(options.quick).size() + bins_of(options.quick).size() -
+                             1 + std::size(kCodings));
+  return options.scene.empty() ? sweeps + 1
+                               : 2 * (sweeps + 1) + volume_scales(options.quick).size();
 }
 
 Status measure_plain(gpu::Device& device, const SonarTradeoffOptions& options, SonarTradeoff& out) {

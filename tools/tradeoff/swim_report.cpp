@@ -11,15 +11,15 @@
 namespace neritic::tools {
 namespace {
 
-
 constexpr const char* kSwimNames[] = {"straight", "turning", "ascent"};
 
 std::string model_name(diver::Model model) {
   return model == diver::Model::kFull ? "full" : "planar";
 }
 std::string variant_name(const SwimPoint& p) {
-  return p.model == diver::Model::kPlanar ? "planar"
-                                   : fmt::format("{} strip{}", p.strips, p.strips == 1 ? "" : "s");
+  return p.model == diver::Model::kPlanar
+             ? "planar"
+             : fmt::format("{} strip{}", p.strips, p.strips == 1 ? "" : "s");
 }
 
 std::string swim_csv(const SwimTradeoff& t) {

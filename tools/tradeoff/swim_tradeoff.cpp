@@ -11,7 +11,6 @@
 namespace neritic::tools {
 namespace {
 
-
 constexpr int kTruthStrips = 64;
 // All swims are looked at so often: a whole number of every step but 1/240 s, which is met within.
 constexpr double kLook_s = 0.1;
