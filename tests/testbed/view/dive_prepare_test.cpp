@@ -95,7 +95,8 @@ TEST_F(DivePrepare, NoRungMakesAPipelineLater) {
   NERITIC_ASSERT_OK(const auto view,
                     DiveView::create(*session, display, nullptr, nullptr, {.governed = true}));
   NERITIC_ASSERT_OK(const std::uint64_t pictures, session->frames().completed());
-  EXPECT_EQ(pictures, kLightLevels);
+  // A start of over 10 s draws them once more for its note.
+  EXPECT_TRUE(pictures == kLightLevels || pictures == 2 * kLightLevels) << pictures;
   const std::uint64_t made = gpu::pipeline_work(device()).made;
   const Pose eyes = camera.mount.pose;
   const xr::ViewGroup group = pair_of(92, 96);  // a picture's size changes no pipeline
