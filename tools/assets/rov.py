@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-import diver_textures as T
+import noise as N
 from glb import Glb, qmul, quat
 from mesh import join, loft, shade
 from plate import fillet, plate
@@ -24,6 +24,19 @@ BLACK, BLUE, WHITE, GREY, GREEN, RED = (
     (0.10, 0.42, 0.16),
     (0.55, 0.05, 0.03),
 )
+
+
+def plastic(n=512, size=0.3):
+    """Clean moulded plastic with slight wear; tinted by vertex colour."""
+    a, f = N.spectral(n, 12, 2.2, 2, 24), N.spectral(n, 13, 0.4, 60)
+    scratch = N.smooth(2.0, 3.0, N.spectral(n, 14, 1.0, 6, stretch=(1, 12)))
+    tone = 0.90 + 0.015 * a + 0.02 * f - 0.15 * scratch
+    rough = 0.52 + 0.05 * a + 0.2 * scratch
+    return (
+        np.clip(tone[..., None] * np.ones(3), 0, 1),
+        N.rough_metal(np.clip(rough, 0.3, 0.9)),
+        N.normal_map(0.00003 * f + 0.00004 * a, size),
+    )
 
 
 def side_plate():
@@ -309,7 +322,7 @@ THRUSTERS = [  # position, yaw about y, pitch about x (degrees); -z of the node 
 
 def main():
     g = Glb("rov")
-    c, mr, n = T.rubber()
+    c, mr, n = plastic()
     tex = dict(base=g.texture("plastic_color", c, 85), normal=g.texture("plastic_normal", n, 64))
     mr_i = g.texture("plastic_mr", mr, 80)
     m_pl = g.material("plastic", mr=mr_i, metal=1.0, rough=1.0, **tex)
