@@ -93,26 +93,60 @@ SunLight sun_light(const scene::Sun& sun, bool under_water) {
   return out;
 }
 
-// Illuminance of a white surface near the camera, lux: the sun's light there, or half of the
-// strongest lamp's at 3 m (most lit surfaces are farther away or oblique), and no less than
-// kDarkest_lx.
-double scene_illuminance_lx(const shared::Lighting& light, const scene::Scene& scene,
-                            std::span<const PlacedLight> model_lights) {
+// Illuminance of a white surface near the camera by the sun, lux.
+double sunlight_lx(const shared::Lighting& light) {
+  if (!(light.terms & shared::kLightSun)) return 0.0;
   double sum = 0.0;
-  if (light.terms & shared::kLightSun) {
-    const double depth =
-        (light.terms & shared::kLightWater) ? std::max(0.0f, light.origin_depth_m) : 0.0;
-    for (int i = 0; i < 3; ++i)
-      sum += kLuminance[i] * light.surface_irradiance[i] *
-             std::exp(-light.diffuse_attenuation[i] * depth);
-  }
-  double lamps = 0.0;
-  for (const scene::Lamp& lamp : scene.lamps) lamps = std::max(lamps, lamp.intensity_cd / 9.0);
-  for (const PlacedLight& placed : model_lights)
-    if (placed.light->kind != scene::Light::Kind::kDirectional)
-      lamps = std::max(lamps, placed.light->intensity / 9.0);
-  return std::max({sum, lamps * 0.5, kDarkest_lx});
+  const double depth =
+      (light.terms & shared::kLightWater) ? std::max(0.0f, light.origin_depth_m) : 0.0;
+  for (int i = 0; i < 3; ++i)
+    sum += kLuminance[i] * light.surface_irradiance[i] *
+           std::exp(-light.diffuse_attenuation[i] * depth);
+  return sum;
 }
+
+// As beam_of() of shaders/shared/water.glsl.
+double beam_share(const shared::SpotLight& spot, double cosine) {
+  if (spot.profiled == 0)
+    return glm::smoothstep(double(spot.cos_outer), double(spot.cos_inner), cosine);
+  const double step =
+      std::sqrt(std::max(1.0 - cosine, 0.0) / std::max(1.0 - double(spot.cos_outer), 1e-6)) *
+      (shared::kProfileSteps - 1);
+  if (!(step <= shared::kProfileSteps - 1)) return 0.0;
+  const auto low = std::min(static_cast<std::uint32_t>(step), shared::kProfileSteps - 2);
+  return std::lerp(double(spot.profile[low]), double(spot.profile[low + 1]), step - low);
+}
+
+// What lamps light lies this far before them, most often; never as near as kTooNear_m.
+constexpr double kLit_m = 3.0, kTooNear_m = 0.1;
+
+// Illuminance by all lamps of a white surface on the axis of one of them, square to it and kLit_m
+// away, less what the water takes from its sight to the origin; of the brightest of these surfaces,
+// and of that half: most lit ones are farther away or oblique.
+double lamplight_lx(const shared::Lighting& light) {
+  const std::span lamps(light.lamps, light.lamp_count);
+  double brightest = 0.0;
+  for (const shared::SpotLight& lit : lamps) {
+    const Vec3 at = Vec3(lit.position) + kLit_m * Vec3(lit.direction);
+    double sum = 0.0;
+    for (const shared::SpotLight& spot : lamps) {
+      const Vec3 way = at - Vec3(spot.position);
+      const double way_m = std::max(glm::length(way), kTooNear_m);
+      const double lambert = glm::dot(way, Vec3(lit.direction)) / way_m;
+      const double beam = beam_share(spot, glm::dot(way, Vec3(spot.direction)) / way_m);
+      for (int i = 0; lambert > 0.0 && i < 3; ++i)
+        sum += kLuminance[i] * spot.intensity_cd[i] * beam * lambert / (way_m * way_m) *
+               std::exp(-light.beam_attenuation[i] * (way_m + glm::length(at)));
+    }
+    brightest = std::max(brightest, sum);
+  }
+  return 0.5 * brightest;
+}
+
+// Lamps count in auto exposure from where they light a surface as the sun does, and alone from
+// where they are two stops brighter: then what they light is a light tone, white is not burnt out,
+// and the water is as dark as it is.
+constexpr double kLampsAlone = 4.0;
 
 // Auto exposure where the water itself shines meters as cameras do, which expose for the water: the
 // mean of the logarithms of luminance over a picture of two thirds water and one third ground
@@ -120,7 +154,7 @@ double scene_illuminance_lx(const shared::Lighting& light, const scene::Scene& s
 // below, with 60 degrees of view, from 2 h on; without a named bottom 3 m ahead, of this albedo.
 constexpr double kMiddleGrey = 0.18, kWaterShare = 2.0 / 3.0, kGround = 0.25, kGroundAhead_m = 3.0;
 // No water counts as darker than this, over ground beside the lens: the clearest by daylight has
-// 0.045. So a lamp's ground does not burn out before a black sea.
+// 0.045.
 constexpr double kLeastWater = 0.04;
 
 // Luminance of the water on a level sight at the origin's depth, the mean of four azimuths: what
@@ -185,6 +219,22 @@ double luminance_over_sea(const shared::Lighting& light, double water) {
                      glm::dot(kLuminance, Vec3(light.surface_irradiance));
   // Without a sky (a model's sun alone) the water counts.
   return std::sqrt(std::max(sky, out) * (kSeaMirrors * sky + (1.0 - kSeaMirrors) * out));
+}
+
+// Auto exposure: what luminance is multiplied by.
+double auto_scale(const shared::Lighting& light) {
+  const double sunlight = sunlight_lx(light), lamplight = lamplight_lx(light);
+  const double water = water_luminance(light);
+  if (!(water > 0.0)) return kPi / std::max({sunlight, lamplight, kDarkest_lx});
+  double metered = metered_luminance(light, water, std::max(sunlight, kDarkest_lx));
+  if (light.terms & shared::kLightSurface) {
+    const double in_air = glm::smoothstep(0.0, kAirAt_m, -double(light.origin_depth_m));
+    metered = std::pow(metered, 1.0 - in_air) * std::pow(luminance_over_sea(light, water), in_air);
+  }
+  const double scale = kMiddleGrey / metered, of_lamps = kPi / lamplight;
+  if (!(lamplight > sunlight && scale > of_lamps)) return scale;
+  const double share = glm::smoothstep(0.0, std::log(kLampsAlone), std::log(lamplight / sunlight));
+  return std::pow(scale, 1.0 - share) * std::pow(of_lamps, share);
 }
 
 // Beams that reach less than this past their lamp (in daylight, say) are not worth a term.
@@ -327,11 +377,8 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameSta
                    fmt::format("at most {}", shared::kMaxLamps));
   NERITIC_CHECK(state.world_from_lamp.size() == scene.lamps.size(), "{} poses of {} lamps",
                 state.world_from_lamp.size(), scene.lamps.size());
-  for (std::size_t i = 0; i < scene.lamps.size(); ++i) {
+  for (std::size_t i = 0; i < scene.lamps.size(); ++i)
     add_lamp(light, scene.lamps[i], state.world_from_lamp[i], origin_m);
-    light.lamps[i].intensity_cd *=
-        static_cast<float>(burning_share(scene.lamps[i], state.time_s, exposed_s));
-  }
   for (const PlacedLight& placed : state.lights)
     if (placed.light->kind == scene::Light::Kind::kDirectional)
       add_model_sun(light, placed);
@@ -340,19 +387,12 @@ Result<shared::Lighting> make_lighting(const scene::Scene& scene, const FrameSta
   if ((light.terms & shared::kLightSurface) &&
       glm::dot(light.surface_irradiance, Vec3f(light.direct_share)) > 0.0f)
     light.terms |= shared::kLightSunSeen;
-  const double illuminance = scene_illuminance_lx(light, scene, state.lights);
-  double scale = kPi / illuminance;
-  if (const double water = water_luminance(light); water > 0.0) {
-    double metered = metered_luminance(light, water, illuminance);
-    if (light.terms & shared::kLightSurface) {
-      const double in_air = glm::smoothstep(0.0, kAirAt_m, -double(light.origin_depth_m));
-      metered =
-          std::pow(metered, 1.0 - in_air) * std::pow(luminance_over_sea(light, water), in_air);
-    }
-    scale = kMiddleGrey / metered;
-  }
+  double scale = auto_scale(light);
   if (exposure.fixed_ev) scale = std::exp2(-*exposure.fixed_ev);
   light.exposure = static_cast<float>(scale * std::exp2(exposure.compensation_ev));
+  for (std::size_t i = 0; i < scene.lamps.size(); ++i)
+    light.lamps[i].intensity_cd *=
+        static_cast<float>(burning_share(scene.lamps[i], state.time_s, exposed_s));
   if (glows(light)) light.terms |= shared::kLightGlow;
   light.emissive_scale = 1.0f / light.exposure;
   light.background = Vec3f(0.06f, 0.075f, 0.10f) / light.exposure;

@@ -72,21 +72,57 @@ TEST(Lighting, AutoExposureOverTheSeaKeepsTheSky) {
     }
 }
 
-// Auto exposure is never off the light's scale, by lamps in the dark or in a bright shallow.
-TEST(Lighting, AutoExposureShowsGroundByLampsInABlackSeaAsBrightAsWhite) {
+// A dark sea with lamps side by side at the origin that look ahead, of so many cd together.
+Result<shared::Lighting> light_by_lamps(double sun_deg, double sum_cd, std::size_t count = 1,
+                                        double depth_m = 3.0) {
   scene::Scene scene;
-  scene.sun = scene::Sun{.elevation_rad = radians(-20.0)};
+  scene.sun = scene::Sun{.elevation_rad = radians(sun_deg)};
   scene.water = scene::Water{.type = "II", .scattering = true};
-  scene.lamps.resize(1);
-  scene.lamps[0].intensity_cd = 9000.0;
+  scene.lamps.resize(count);
+  for (scene::Lamp& lamp : scene.lamps) lamp.intensity_cd = sum_cd / double(count);
   FrameState state;
-  state.world_from_lamp.resize(1);
-  const auto light = make_lighting(scene, state, Vec3(0.0, -3.0, 0.0), {}, false);
-  ASSERT_TRUE(light.ok());
-  // Half of the lamp's light at 3 m: 500 lx on ground of albedo 0.25.
-  const double ground = 0.25 * 500.0 / kPi * light->exposure;
-  EXPECT_GT(ground, 0.25);
-  EXPECT_LT(ground, 2.5);
+  state.world_from_lamp.resize(count);
+  for (Pose& pose : state.world_from_lamp) pose.position_m.y = -depth_m;
+  return make_lighting(scene, state, Vec3(0.0, -depth_m, 0.0), {}, false);
+}
+
+// The sea is black then: its share of the picture does not count.
+TEST(Lighting, AutoExposureByLampsAloneBurnsNothingOut) {
+  for (const std::size_t count : {1, 2, 4}) {
+    const auto light = light_by_lamps(-30.0, 9000.0, count);
+    ASSERT_TRUE(light.ok());
+    // White 3 m ahead, by 1000 lx less what 3 m of water take on the way there and back, is 2: 243
+    // of 255 in a picture, ground of a quarter of that 201.
+    double white = 0.0;
+    for (int i = 0; i < 3; ++i)
+      white += Vec3(0.2126, 0.7152, 0.0722)[i] * std::exp(-6.0 * light->beam_attenuation[i]);
+    EXPECT_NEAR(1000.0 * white / kPi * light->exposure, 2.0, 2e-3) << count;
+  }
+}
+
+TEST(Lighting, LampsAreNothingToAutoExposureInDaylight) {
+  const auto without = light_by_lamps(40.0, 0.0), with = light_by_lamps(40.0, 9000.0);
+  ASSERT_TRUE(without.ok() && with.ok());
+  EXPECT_EQ(without->exposure, with->exposure);
+}
+
+// As the sun sets, lamps change the exposure by no jump and only for darker, until they count
+// alone.
+TEST(Lighting, AutoExposureByLampsFollowsTheSunDown) {
+  double before = 0.0, before_without = 0.0;
+  for (double sun_deg = 20.0; sun_deg > -20.0; sun_deg -= 0.1) {
+    const auto with = light_by_lamps(sun_deg, 9000.0, 1, 20.0);
+    const auto without = light_by_lamps(sun_deg, 0.0, 1, 20.0);
+    ASSERT_TRUE(with.ok() && without.ok());
+    EXPECT_LE(with->exposure, without->exposure) << sun_deg;
+    if (before > 0.0) {
+      const double by_sun = std::abs(std::log2(without->exposure / before_without));
+      EXPECT_LT(std::abs(std::log2(with->exposure / before)), 4.0 * by_sun + 1e-3) << sun_deg;
+    }
+    before = with->exposure;
+    before_without = without->exposure;
+  }
+  EXPECT_EQ(float(before), light_by_lamps(-30.0, 9000.0, 1, 20.0)->exposure);
 }
 
 TEST(Lighting, TermsHaveNamesForTheDump) {
