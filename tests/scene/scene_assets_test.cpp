@@ -138,6 +138,27 @@ TEST(SceneAssets, TheSeabedIsATerrainOfAFile) {
   EXPECT_EQ(triangle_count(*scene.models.at(ridge->model)), 2u * 256u * 256u);
 }
 
+// Away from its ridge the bed lies as a survey measured it, at each of the survey's cells within a
+// ripple's height.
+TEST(SceneAssets, TheSeabedLiesOnASurveysRelief) {
+  const std::filesystem::path folder = test::source_dir() / "assets/terrain";
+  const auto survey = read_heightfield(folder / "jd211_crop.asc", {});
+  const auto bed = read_heightfield(folder / "seabed.npy", {.cell_m = 0.5});
+  ASSERT_TRUE(survey.ok() && bed.ok());
+  // The corner in the east and south, 25 x 25 m: cells of 2 m, the survey one cell larger on each
+  // side.
+  double least_m = 1e9, most_m = -1e9, highest_m = -1e9, lowest_m = 1e9;
+  for (std::uint32_t row = 52; row <= 64; ++row)
+    for (std::uint32_t column = 52; column <= 64; ++column) {
+      const double measured = survey->heights_m[(row + 1) * survey->columns + column + 1];
+      const double off = bed->heights_m[4 * row * bed->columns + 4 * column] - measured;
+      least_m = std::min(least_m, off), most_m = std::max(most_m, off);
+      lowest_m = std::min(lowest_m, measured), highest_m = std::max(highest_m, measured);
+    }
+  EXPECT_LT(most_m - least_m, 0.16);
+  EXPECT_GT(highest_m - lowest_m, 0.18);
+}
+
 // The format's page names every key that the reader knows.
 TEST(SceneAssets, TheFormatsPageHasEveryKey) {
   const auto page = read_text(test::source_dir() / "assets/scenes/README.md");
