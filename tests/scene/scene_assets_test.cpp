@@ -131,6 +131,60 @@ TEST(SceneAssets, TheInstancesAreAHundredOfTwentyThousandTriangles) {
   EXPECT_EQ(hundred, 1u);
 }
 
+// What a vehicle's gripper holds lies between the jaws of its model, and nothing of the gripper is
+// in the sonar's sight or in the upper 60 % of the camera's.
+TEST(SceneAssets, TheVehiclesGripperIsWhereItHolds) {
+  const auto scene = load_scene(test::source_dir() / "assets/experiments/team/tool.toml");
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  const Object *rov = find_object(*scene, "rov"), *gripper = find_object(*scene, "gripper");
+  ASSERT_TRUE(rov && rov->dynamics && rov->dynamics->gripper && gripper);
+  const Vec3 held = rov->dynamics->gripper->position_m;
+  const Model& model = *scene->models.at(gripper->model);
+  const auto& sonar = scene->sonars.at(0);
+  const auto& camera = scene->cameras.at(0);
+  const Vec3 sonar_m = sonar.mount.pose.position_m, camera_m = camera.mount.pose.position_m;
+  const double lowest = -0.2 * std::tan(0.5 * camera.vertical_fov_rad);
+  const auto corners_of = [&](std::string_view name) {
+    const auto found = std::ranges::find(model.nodes, name, &Node::name);
+    std::vector<Vec3> out;
+    if (found == model.nodes.end() || found->mesh < 0) return out;
+    const Mat4 placed =
+        evaluate_node(model, static_cast<int>(found - model.nodes.begin()), -1, 0.0);
+    for (const Primitive& primitive : model.meshes[found->mesh].primitives)
+      for (const Vec3f& corner : primitive.positions)
+        out.push_back(gripper->mount.pose.position_m + Vec3(placed * Vec4(Vec3(corner), 1.0)));
+    return out;
+  };
+  for (const char* name : {"body", "jaw_port", "jaw_starboard"}) {
+    const auto corners = corners_of(name);
+    ASSERT_FALSE(corners.empty()) << name;
+    double nearest_m = 1e9;
+    for (const Vec3& corner : corners) {
+      nearest_m = std::min(nearest_m, glm::distance(corner, held));
+      const Vec3 heard = corner - sonar_m, seen = corner - camera_m;
+      if (heard.z < 0.0) {
+        EXPECT_GT(std::atan2(heard.y, -heard.z), 0.5 * sonar.elevation_rad) << name;
+      }
+      if (seen.z < 0.0) {
+        EXPECT_LT(seen.y / -seen.z, lowest) << name;
+      }
+    }
+    // The jaws are 62 mm apart.
+    EXPECT_GT(nearest_m, 0.028) << name;
+    if (std::string_view(name) != "body") {
+      EXPECT_LT(nearest_m, 0.034) << name;
+    }
+  }
+  const auto mean_x = [&](const char* name) {
+    double sum = 0.0;
+    const auto corners = corners_of(name);
+    for (const Vec3& corner : corners) sum += corner.x;
+    return sum / static_cast<double>(corners.size());
+  };
+  EXPECT_LT(mean_x("jaw_port"), held.x);
+  EXPECT_GT(mean_x("jaw_starboard"), held.x);
+}
+
 TEST(SceneAssets, TheSeabedIsATerrainOfAFile) {
   const Scene scene = load("seabed.toml");
   const Object* ridge = find_object(scene, "ridge");
