@@ -152,6 +152,10 @@ TEST(Lighting, LampsAreCountedAndOneTooManyIsBadInput) {
 TEST(Lighting, AStrobeGivesTheShareOfTheExposureInWhichItBurns) {
   scene::Scene scene;
   scene.lamps.resize(1);
+  FrameState at_start;
+  at_start.world_from_lamp.resize(1);
+  const auto always = make_lighting(scene, at_start, Vec3(0.0), {}, false);
+  ASSERT_TRUE(always.ok());
   scene.lamps[0].strobe_period_s = 0.1;
   scene.lamps[0].strobe_flash_s = 0.005;
   const auto share = [&](double time_s, double exposed_s) {
@@ -159,6 +163,7 @@ TEST(Lighting, AStrobeGivesTheShareOfTheExposureInWhichItBurns) {
     state.time_s = time_s;
     state.world_from_lamp.resize(1);
     const auto light = make_lighting(scene, state, Vec3(0.0), {}, false, exposed_s);
+    EXPECT_EQ(light->exposure, always->exposure);  // the camera knows what the strobe will give
     return double(light->lamps[0].intensity_cd.x) / scene.lamps[0].intensity_cd;
   };
   for (const double periods : {0.0, 1.0, 1000.0}) {
