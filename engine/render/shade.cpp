@@ -1,5 +1,6 @@
 // Renderer: creation, and the compute passes on the G-buffer: shade and tonemap.
 #include <algorithm>
+#include <limits>
 
 #include "engine/core/check.hpp"
 #include "engine/render/lighting.hpp"
@@ -10,23 +11,31 @@
 namespace neritic::render {
 namespace {
 
-// Rows of workgroups that one pipeline shades, or a list of tiles (shaders/shade_tiles.comp).
-struct ShadeRows {
+struct Rows {  // of workgroups
   std::uint32_t first = 0, end = 0;
-  bool sea = false;
-  const gpu::Pipeline* pipeline = nullptr;
-  bool surfaces = true;
-  std::uint32_t list = 0;
 };
 
-// Splits the picture where no view sees the wavy surface before the water has hidden it (sea_meets
-// in shaders/shared/sea_surface.glsl, with room for the waves' height).
-std::vector<ShadeRows> rows_of_sea(const ViewSet& views, const shared::Lighting& lighting,
-                                   const shared::Waves& waves, std::uint32_t groups_high) {
-  const float clearest = std::min(
-      {lighting.beam_attenuation.x, lighting.beam_attenuation.y, lighting.beam_attenuation.z});
-  const float room_m = 6.0f * waves.height_rms_m + 0.05f;
-  std::uint32_t first = groups_high, end = 0;
+// Rows of workgroups that one pipeline shades, or a list of tiles (shaders/shade_tiles.comp).
+struct ShadePart {
+  Rows rows;
+  bool sea = false;
+  bool surfaces = true;
+  std::uint32_t list = 0;
+  const gpu::Pipeline* pipeline = nullptr;
+};
+
+// What tells whether a sight meets the sea's surface before the water has hidden it (sea_meets in
+// shaders/shared/sea_surface.glsl, with room for the waves' height).
+struct SeaSight {
+  float clearest, room_m;
+  float near_off_m = 0.0f;  // the least that any view's window lies under its highest waves
+};
+
+SeaSight sea_sight(const ViewSet& views, const shared::Lighting& lighting,
+                   const shared::Waves& waves) {
+  SeaSight sight{std::min({lighting.beam_attenuation.x, lighting.beam_attenuation.y,
+                           lighting.beam_attenuation.z}),
+                 6.0f * waves.height_rms_m + 0.05f, std::numeric_limits<float>::infinity()};
   const auto all = gpu_views(views);
   for (const shared::View& view : std::span(all).first(views.views.size())) {
     // The window that it looks through is higher than the eye (shaders/shade.comp).
@@ -34,10 +43,20 @@ std::vector<ShadeRows> rows_of_sea(const ViewSet& views, const shared::Lighting&
     for (const float y : {0.0f, static_cast<float>(views.height)})
       for (const float x : {0.0f, static_cast<float>(views.width)})
         highest = std::max(highest, view.ray_corner.y + x * view.ray_dx.y + y * view.ray_dy.y);
-    const float deep_m =
-        lighting.origin_depth_m - view.eye.y + waves.eye_height_m - room_m - highest * view.near_m;
-    if (!(deep_m > 0.0f)) return {{0, groups_high, true, nullptr}};
-    const float least = std::max(deep_m * clearest / shared::kSeaFaded, 2e-3f);
+    const float off_m =
+        lighting.origin_depth_m - view.eye.y + waves.eye_height_m - highest * view.near_m;
+    sight.near_off_m = std::min(sight.near_off_m, off_m - sight.room_m);
+  }
+  return sight;
+}
+
+// The rows where some view's sight may meet it.
+Rows rows_of_sea(const ViewSet& views, const SeaSight& sight, std::uint32_t groups_high) {
+  if (!(sight.near_off_m > 0.0f)) return {0, groups_high};
+  std::uint32_t first = groups_high, end = 0;
+  const float least = std::max(sight.near_off_m * sight.clearest / shared::kSeaFaded, 2e-3f);
+  const auto all = gpu_views(views);
+  for (const shared::View& view : std::span(all).first(views.views.size()))
     for (std::uint32_t g = 0; g < groups_high; ++g) {
       float up = -1.0f;  // at least the sine of every sight of these rows, as rays are 1 or longer
       for (const float y : {g * 8.0f, g * 8.0f + 8.0f})
@@ -47,13 +66,42 @@ std::vector<ShadeRows> rows_of_sea(const ViewSet& views, const shared::Lighting&
       first = std::min(first, g);
       end = std::max(end, g + 1);
     }
-  }
   static_assert(shared::kShadeGroup == 8);
-  if (first >= end) return {{0, groups_high, false, nullptr}};
-  std::vector<ShadeRows> rows{{first, end, true, nullptr}};
-  if (first > 0) rows.push_back({0, first, false, nullptr});
-  if (end < groups_high) rows.push_back({end, groups_high, false, nullptr});
-  return rows;
+  return first < end ? Rows{first, end} : Rows{};
+}
+
+// How tiles of one view are told apart.
+shared::ShadeTilesPush tiles_push(const GBuffer& gbuffer, const ViewSet& views, Rows sea,
+                                  const SeaSight& sight) {
+  const shared::View view = gpu_views(views).front();
+  return {.wide = groups(gbuffer.width),
+          .high = groups(gbuffer.height),
+          .sea_first = sea.first,
+          .sea_end = sea.end,
+          .near_m = view.near_m,
+          .sea_off_m = sight.near_off_m,
+          .sea_clearest = sight.clearest,
+          .ray_corner = view.ray_corner,
+          .ray_dx = view.ray_dx,
+          .ray_dy = view.ray_dy};
+}
+
+// The parts of a picture by what a workgroup of them needs: the sea's surface, and with `tiled`
+// whether it shows a solid.
+std::vector<ShadePart> shade_parts(Rows sea, std::uint32_t groups_high, bool tiled) {
+  std::vector<ShadePart> parts;
+  if (sea.first < sea.end) parts.push_back({.rows = sea, .sea = true});
+  if (sea.first > 0) parts.push_back({.rows = {0, sea.first}});
+  if (sea.end < groups_high) parts.push_back({.rows = {sea.end, groups_high}});
+  if (!tiled) return parts;
+  std::vector<ShadePart> lists;
+  for (const std::uint32_t list : {0u, 1u, 2u, 3u}) {
+    const bool of_sea = (list & shared::kShadeTileSea) != 0;
+    if (!of_sea || sea.first < sea.end)
+      lists.push_back(
+          {.sea = of_sea, .surfaces = (list & shared::kShadeTileSolid) != 0, .list = list});
+  }
+  return lists;
 }
 
 }  // namespace
@@ -80,22 +128,22 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
   const std::optional<shared::Waves> waves =
       inputs.waves ? std::optional(*inputs.waves) : std::nullopt;
   NERITIC_CHECK(waves || !(lighting.terms & shared::kLightWaves), "{}shade: no waves", prefix);
-  // Rows that see no sea are spared its waves: a CPU driver computes them for every pixel.
-  const bool surface = (lighting.terms & shared::kLightSurface) != 0;
-  std::vector<ShadeRows> rows{{0, groups(gbuffer.height), surface, nullptr}};
-  if (waves) rows = rows_of_sea(views, lighting, *waves, groups(gbuffer.height));
-  // Tiles of water alone are shaded without what solids need. Not with waves: lists beside them
-  // smash lavapipe's stack (Mesa 22.3; seen in PictureExtremes.EachTermIsInTheGraphOnlyWhere...).
-  // Not with several layers: a CPU's driver must see which layer a workgroup reads.
-  const bool tiled = gbuffer.layers == 1 && !waves;
+  // Rows and tiles that see no sea are spared its waves: a CPU driver computes them for every
+  // pixel.
+  const std::uint32_t high = groups(gbuffer.height);
+  const SeaSight sight = sea_sight(views, lighting, waves.value_or(shared::Waves{}));
+  const Rows sea =
+      lighting.terms & shared::kLightSurface ? rows_of_sea(views, sight, high) : Rows{};
+  // Tiles of water alone are shaded without what solids need. Not with several layers: a CPU's
+  // driver must see which layer a workgroup reads.
+  const bool tiled = gbuffer.layers == 1;
   graph::BufferHandle tiles;
   if (tiled) {
-    NERITIC_TRY(tiles, declare_shade_tiles(graph, prefix, gbuffer,
-                                           {groups(gbuffer.width), groups(gbuffer.height)}));
-    rows = {{.sea = surface, .surfaces = false, .list = 0},
-            {.sea = surface, .surfaces = true, .list = 1}};
+    NERITIC_TRY(
+        tiles, declare_shade_tiles(graph, prefix, gbuffer, tiles_push(gbuffer, views, sea, sight)));
   }
-  for (ShadeRows& part : rows) {
+  std::vector<ShadePart> parts = shade_parts(sea, high, tiled);
+  for (ShadePart& part : parts) {
     gpu::Pipeline& pipeline = shade_[{
         lighting.terms, lighting.lamp_count, inputs.visibility_step, inputs.inscatter_samples,
         (part.sea ? 1u : 0u) + (part.surfaces ? 2u : 0u) + (tiled ? 4u : 0u)}];
@@ -156,8 +204,8 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
                                    {kHdrFormat, gbuffer.width, gbuffer.height, gbuffer.layers}),
               graph::Access::kStorageWriteCompute);
       },
-      [this, rows, gbuffer, lighting, light, waves, tiles, &views](const Data& data,
-                                                                   graph::PassContext& context) {
+      [this, parts, gbuffer, lighting, light, waves, tiles, &views](const Data& data,
+                                                                    graph::PassContext& context) {
         gpu::Commands& commands = context.commands;
         const gpu::UploadSlice view_data =
             commands.upload(std::span<const shared::View>(gpu_views(views)));
@@ -200,12 +248,13 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
                 context.image(data.scattered ? data.scattered : data.hdr).view()),
             gpu::bound_buffer(shared::kShadeTiles,
                               tiles ? context.buffer(tiles).handle() : nothing_.handle())};
-        for (const ShadeRows& part : rows) {
+        for (const ShadePart& part : parts) {
           commands.bind_pipeline(*part.pipeline);
           commands.bind(*part.pipeline, resources);
           if (!tiles) {
-            commands.push(*part.pipeline, shared::ShadePush{part.first, 0});
-            commands.dispatch(groups(gbuffer.width), part.end - part.first, gbuffer.layers);
+            commands.push(*part.pipeline, shared::ShadePush{part.rows.first, 0});
+            commands.dispatch(groups(gbuffer.width), part.rows.end - part.rows.first,
+                              gbuffer.layers);
             continue;
           }
           const std::uint32_t count = groups(gbuffer.width) * groups(gbuffer.height);

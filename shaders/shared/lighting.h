@@ -125,8 +125,19 @@ struct ShadePush {
 struct ShadeTilesPush {
   uint wide;  // tiles of the picture
   uint high;
+  uint sea_first;  // rows of tiles that may see the sea's surface
+  uint sea_end;
+  float near_m;
+  float sea_off_m;     // how far above the eye it is at least; not above 0: all tiles of these rows see it
+  float sea_clearest;  // the least attenuation of a beam, 1/m
+  vec3 ray_corner;     // as those of View
+  vec3 ray_dx;
+  vec3 ray_dy;
 };
-NERITIC_CONST uint kShadeTileLists = 2;
+// A list's number.
+NERITIC_CONST uint kShadeTileSolid = 1;
+NERITIC_CONST uint kShadeTileSea = 2;
+NERITIC_CONST uint kShadeTileLists = 4;
 NERITIC_CONST uint kShadeTileHead = 4;
 NERITIC_CONST uint kShadeTilesDepth = 0;
 NERITIC_CONST uint kShadeTilesOut = 1;

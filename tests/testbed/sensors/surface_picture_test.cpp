@@ -7,6 +7,7 @@
 
 #include "engine/render/lighting.hpp"
 #include "engine/render/water_optics.hpp"
+#include "engine/scene/shapes.hpp"
 #include "testbed/sensors/session.hpp"
 #include "tests/support/gpu_fixture.hpp"
 
@@ -272,6 +273,42 @@ TEST_F(SurfacePicture, TheGlitterIsTheLightThatALevelSurfaceMirrors) {
     const double wanted = surface_fresnel(std::sin(look.sun_rad)) * beam.y * std::sin(look.sun_rad);
     EXPECT_NEAR(glitter / wanted, 1.0, sea.limit) << sea.height_m;
   }
+}
+
+// One view is shaded by tiles, of which some see the sea and some a solid; the layers of two views
+// are not. Of solids before, in and behind the surface, from below and above it, both show the
+// same.
+TEST_F(SurfacePicture, TilesShowWhatAWholePictureShows) {
+  for (const bool waves : {false, true})
+    for (const double height_m : {-6.0, -0.4, 1.5}) {
+      if (!waves && height_m > -1.0) continue;
+      scene::Scene scene = surface_scene({.height_m = height_m,
+                                          .scattering = true,
+                                          .wind_m_s = waves ? std::optional(5.0) : std::nullopt});
+      scene.models.push_back(std::make_shared<scene::Model>(scene::make_box(Vec3(2.0))));
+      for (const Vec3& at : {Vec3(-2.0, -4.0, -5.0), Vec3(1.0, 0.0, -7.0), Vec3(3.0, -9.0, -9.0)}) {
+        scene::Object box;
+        box.model = 0;
+        box.mount.pose.position_m = at;
+        scene.objects.push_back(box);
+      }
+      NERITIC_ASSERT_OK(const auto session, Session::create(device(), scene));
+      render::ViewSet views = camera_views(session->scene(), session->scene().cameras.front());
+      views.width = 160;
+      views.height = 120;
+      views.views.front().tangents = {-1.0, 1.0, -0.75, 0.75};
+      const auto shown = [&](std::size_t eyes) {
+        render::ViewSet set = views;
+        set.views.resize(eyes, views.views.front());
+        FrameRequest request;
+        request.views.push_back({.name = "view",
+                                 .views = set,
+                                 .exposure = session->scene().cameras.front().exposure,
+                                 .capture = Capture{.motion = false}.without_geometry()});
+        return std::move(session->render(request).value().views[0].eyes[0].color);
+      };
+      EXPECT_EQ(shown(1).data, shown(2).data) << height_m;
+    }
 }
 
 TEST_F(SurfacePicture, SunAtTheZenithOnTheHorizonAndBelowGivesFinitePictures) {
