@@ -181,12 +181,18 @@ class DrawListBuilder {
       const double error_m = kFloatError * (glm::length(Vec3(m[3])) +
                                             stretch * (glm::length(own_center_m) + own_radius_m));
       const DrawnLarger* larger = a.label < larger_of_.size() ? larger_of_[a.label] : nullptr;
-      if (bounded && !larger && !spheres_.may_see(center, own_radius_m * stretch + error_m))
+      const Vec3 own_half_m = job ? job->half_m : primitive.half_m;
+      if (bounded && !larger &&
+          !(spheres_.may_see(center, own_radius_m * stretch + error_m) &&
+            spheres_.may_see_box(
+                center,
+                {Vec3(m[0]) * own_half_m.x, Vec3(m[1]) * own_half_m.y, Vec3(m[2]) * own_half_m.z},
+                error_m)))
         continue;
       const double order_m = blend ? center_m : nearness(center_m, own_radius_m * stretch);
       std::uint32_t level = 0;
       if (options_.mesh_error_px > 0.0 && bounded && !blend) {
-        const double px_m = pixels_a_metre(m, center, job ? job->half_m : primitive.half_m);
+        const double px_m = pixels_a_metre(m, center, own_half_m);
         if (2.0 * own_radius_m * stretch * px_m <
             std::max(0.5 * options_.mesh_error_px, options_.least_px))
           continue;

@@ -72,9 +72,10 @@ void bound_job(DeformJob& job, const GpuPrimitive& primitive, const std::vector<
     if (first + part.joint >= joints.size()) return;
     const Mat4 m(joints[first + part.joint]);
     const Vec3 center_m(m * Vec4(part.center_m, 1.0));
-    const double reach_m = part.radius_m * largest_stretch(m);
-    box.add(center_m - Vec3(reach_m));
-    box.add(center_m + Vec3(reach_m));
+    Vec3 reach_m(0.0);
+    for (int axis = 0; axis < 3; ++axis) reach_m += glm::abs(Vec3(m[axis])) * part.half_m[axis];
+    box.add(center_m - reach_m);
+    box.add(center_m + reach_m);
   }
   if (box.empty() || !is_finite(box.min) || !is_finite(box.max)) return;
   job.center_m = 0.5 * (box.min + box.max);

@@ -32,11 +32,10 @@ struct GpuLevel {
   double error_m = 0.0;            // in the mesh's frame
 };
 
-// A ball round the vertices, at rest, that a joint moves.
+// A box round the vertices, at rest, that a joint moves.
 struct JointBound {
   std::uint32_t joint = 0;  // of the skin
-  Vec3 center_m{0.0};
-  double radius_m = 0.0;
+  Vec3 center_m{0.0}, half_m{0.0};
 };
 
 struct GpuPrimitive {

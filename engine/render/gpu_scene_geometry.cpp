@@ -46,32 +46,21 @@ std::vector<std::uint32_t> order_by_use(std::vector<std::uint32_t>& indices, std
   return order;
 }
 
-// Balls round what each joint moves: a skinned vertex lies between the places to which its joints
+// Boxes round what each joint moves: a skinned vertex lies between the places to which its joints
 // alone would bring it.
 std::vector<JointBound> bounds_of_joints(const scene::Primitive& p) {
   std::vector<scene::Bounds> boxes;
-  const auto each = [&](auto&& visit) {
-    for (std::size_t v = 0; v < p.positions.size(); ++v)
-      for (int k = 0; k < 4; ++k)
-        if (p.weights[v][k] > 0.0f) visit(p.joints[v][static_cast<std::size_t>(k)], v);
-  };
-  each([&](std::size_t joint, std::size_t v) {
-    if (joint >= boxes.size()) boxes.resize(joint + 1);
-    boxes[joint].add(Vec3(p.positions[v]));
-  });
-  std::vector<JointBound> out(boxes.size());
-  for (std::size_t j = 0; j < boxes.size(); ++j) {
-    out[j].joint = static_cast<std::uint32_t>(j);
-    out[j].radius_m = -1.0;
-    if (boxes[j].empty()) continue;
-    out[j].center_m = (boxes[j].min + boxes[j].max) * 0.5;
-    out[j].radius_m = 0.0;
-  }
-  each([&](std::size_t joint, std::size_t v) {
-    out[joint].radius_m =
-        std::max(out[joint].radius_m, glm::length(Vec3(p.positions[v]) - out[joint].center_m));
-  });
-  std::erase_if(out, [](const JointBound& bound) { return bound.radius_m < 0.0; });
+  for (std::size_t v = 0; v < p.positions.size(); ++v)
+    for (int k = 0; k < 4; ++k) {
+      if (!(p.weights[v][k] > 0.0f)) continue;
+      const std::size_t joint = p.joints[v][static_cast<std::size_t>(k)];
+      if (joint >= boxes.size()) boxes.resize(joint + 1);
+      boxes[joint].add(Vec3(p.positions[v]));
+    }
+  std::vector<JointBound> out;
+  for (std::uint32_t joint = 0; joint < boxes.size(); ++joint)
+    if (const scene::Bounds& box = boxes[joint]; !box.empty())
+      out.push_back({joint, 0.5 * (box.min + box.max), 0.5 * (box.max - box.min)});
   return out;
 }
 

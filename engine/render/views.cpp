@@ -1,6 +1,7 @@
 #include "engine/render/views.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "engine/core/check.hpp"
@@ -108,6 +109,18 @@ bool SphereCulling::may_see(const Vec3& center_m, double radius_m) const {
   for (const auto& planes : views_)
     if (std::ranges::none_of(planes, outside)) return true;
   return false;
+}
+
+bool SphereCulling::may_see_box(const Vec3& center_m, const std::array<Vec3, 3>& halves_m,
+                                double margin_m) const {
+  const auto outside = [&](const Plane& plane) {
+    double reach_m = margin_m;
+    for (const Vec3& half : halves_m) reach_m += std::abs(glm::dot(plane.normal, half));
+    return glm::dot(plane.normal, center_m) + plane.offset_m < -reach_m;
+  };
+  if (within_ && outside(*within_)) return false;
+  return std::ranges::any_of(
+      views_, [&](const auto& planes) { return std::ranges::none_of(planes, outside); });
 }
 
 bool SphereCulling::may_see_between(const Vec3& from_m, const Vec3& to_m, double radius_m) const {

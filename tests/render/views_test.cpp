@@ -89,6 +89,38 @@ TEST(Math, LookAtFacesItsTargetForAnyDirection) {
   }
 }
 
+// Random boxes askew: one of which a point is seen is seen, and more are found to be out of sight
+// than by the balls round them.
+TEST(SphereCulling, ABoxIsSeenWhereAPointOfItIs) {
+  ViewSet set = one_view({Vec3(5.0, -3.0, 2.0), from_yaw_pitch_roll(0.7, -0.4, 0.2)});
+  set.within = HalfSpace{Vec3(0.0, -1.0, 0.0), -2.0};
+  const SphereCulling culling(set);
+  const MixedKey key(RandomKey{4});
+  std::uint64_t drawn = 0;
+  const auto within = [&](double low, double high) {
+    return low + (high - low) * random_uniform(key, drawn++);
+  };
+  int seen = 0, by_ball = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 center_m(within(-6, 6), within(-6, 6), within(-6, 6));
+    const Quat turn = from_yaw_pitch_roll(within(-3, 3), within(-1, 1), within(-3, 3));
+    const Vec3 half_m(within(0, 0.3), within(0, 0.3), within(0, 2.0));
+    const std::array<Vec3, 3> halves_m{turn * Vec3(half_m.x, 0, 0), turn * Vec3(0, half_m.y, 0),
+                                       turn * Vec3(0, 0, half_m.z)};
+    const bool box = culling.may_see_box(center_m, halves_m, 0.0);
+    seen += box;
+    by_ball += culling.may_see(center_m, glm::length(half_m));
+    const Vec3 at_m = center_m + within(-1, 1) * halves_m[0] + within(-1, 1) * halves_m[1] +
+                      within(-1, 1) * halves_m[2];
+    if (culling.may_see(at_m, 0.0)) {
+      EXPECT_TRUE(box);
+    }
+    EXPECT_TRUE(!box || culling.may_see_box(center_m, halves_m, 0.1));
+  }
+  EXPECT_GT(seen, 500);
+  EXPECT_LT(seen, 0.9 * by_ball);
+}
+
 // Random spheres: what a part of the planes, a line along x and a way between two places say of
 // them is what all planes say of each.
 TEST(SphereCulling, ItsShortcutsAgreeWithAllItsPlanes) {

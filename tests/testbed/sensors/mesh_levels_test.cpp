@@ -1,6 +1,7 @@
 // Pictures with coarser meshes against those of the meshes as they are.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -20,13 +21,10 @@ class MeshLevelPictures : public test::GpuTest {
     NERITIC_ASSERT_OK(scene::Scene scene,
                       scene::load_scene(test::source_dir() / "assets/scenes/wreck.toml"));
     scene.sonars.clear();
-    // The knob of meshes is also that of shadows.
-    scene.sun->shadows.reset();
-    scene.ambient->occlusion_m = 0.0;
     NERITIC_ASSERT_OK(session_, Session::create(device(), std::move(scene)));
   }
 
-  ImageU8 show(std::uint32_t step, double back_m = 0.0, const Capture& capture = colour()) {
+  ImageU8 show(double mesh_error, double back_m = 0.0, const Capture& capture = colour()) {
     render::ViewSet views = camera_views(session_->scene(), session_->scene().cameras.front());
     views.width = 320;
     views.height = 180;
@@ -36,12 +34,12 @@ class MeshLevelPictures : public test::GpuTest {
     request.views.push_back({.name = "view",
                              .views = views,
                              .exposure = session_->scene().cameras.front().exposure,
-                             .detail = {.visibility_step = step},
+                             .detail = {.mesh_error = mesh_error},
                              .capture = capture});
     return std::move(session_->render(request).value().views[0].eyes[0].color);
   }
 
-  static constexpr std::uint32_t kWhole = 1, kHalfAPixel = 2;
+  static constexpr double kWhole = 0.0, kHalfAPixel = 0.5;
   static Capture colour() { return Capture{.motion = false}.without_geometry(); }
 
   static double difference(const ImageU8& a, const ImageU8& b) {
@@ -85,7 +83,7 @@ TEST_F(MeshLevelPictures, NothingPopsWhileTheCameraDrawsNear) {
   EXPECT_LT(worst, 0.2);
 }
 
-TEST_F(MeshLevelPictures, SkinnedMeshesStayWithinTheirBalls) {
+TEST_F(MeshLevelPictures, SkinnedMeshesStayWithinTheirBallsAndBoxes) {
   open();
   const scene::Scene& scene = session_->scene();
   for (const double time_s : {0.0, 0.7, 13.3}) {
@@ -108,11 +106,31 @@ TEST_F(MeshLevelPictures, SkinnedMeshesStayWithinTheirBalls) {
             at += double(p.weights[v][k]) * Vec3(joints[p.joints[v][static_cast<std::size_t>(k)]] *
                                                  Vec4(Vec3(p.positions[v]), 1.0));
           EXPECT_LE(glm::distance(at, job.center_m), job.radius_m);
+          EXPECT_TRUE(glm::all(glm::lessThanEqual(glm::abs(at - job.center_m), job.half_m)));
         }
       }
       EXPECT_LT(job.radius_m, 4.0);
     }
   }
+}
+
+// At 20 s the shark swims beside the picture: the ball round it reaches in, it does not.
+TEST_F(MeshLevelPictures, AFishBesideThePictureIsNotDrawn) {
+  open();
+  const scene::Scene& scene = session_->scene();
+  const auto shark = std::ranges::find(scene.objects, "shark", &scene::Object::name);
+  ASSERT_NE(shark, scene.objects.end());
+  const auto drawn_at = [&](double time_s) {
+    const auto state =
+        render::evaluate_frame(scene, session_->gpu_scene(), time_s, time_s + 0.1, false);
+    const render::DrawList list = render::build_draw_list(
+        scene, session_->gpu_scene(), state, camera_views(scene, scene.cameras.front()));
+    return std::ranges::any_of(list.instances, [&](const shared::Instance& instance) {
+      return (instance.label & 0xffffu) == shark->class_id;
+    });
+  };
+  EXPECT_TRUE(drawn_at(0.0));
+  EXPECT_FALSE(drawn_at(20.0));
 }
 
 }  // namespace
