@@ -66,6 +66,10 @@ std::uint32_t flags_of(const scene::Material& m, bool vertex_colors) {
   flag(m.detail_texture.present(), shared::kMaterialDetailTexture);
   flag(m.unlit, shared::kMaterialUnlit);
   flag(vertex_colors, shared::kMaterialVertexColor);
+  for (const scene::TextureRef* ref :
+       {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
+        &m.occlusion_texture, &m.emissive_texture, &m.detail_texture})
+    flag(ref->present() && ref->uv_set != 0, shared::kMaterialSecondUv);
   flag(m.alpha_mode == scene::AlphaMode::kMask, shared::kMaterialMask);
   flag(m.transmissive, shared::kMaterialTransmissive);
   flag(m.diffuse_transmission > 0.0f, shared::kMaterialThin);

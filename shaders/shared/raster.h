@@ -65,6 +65,8 @@ NERITIC_CONST uint kMaterialMask = 128;
 NERITIC_CONST uint kMaterialTransmissive = 256;
 NERITIC_CONST uint kMaterialThin = 512;  // diffuse_transmission is above 0
 NERITIC_CONST uint kMaterialDetailTexture = 1024;
+NERITIC_CONST uint kMaterialTextures = 1055;  // any of them
+NERITIC_CONST uint kMaterialSecondUv = 2048;  // some texture uses the second UV set
 
 // KHR_texture_transform and the UV set of one texture.
 struct TextureMapping {
