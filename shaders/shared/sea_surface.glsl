@@ -26,19 +26,22 @@ void take_sea() {
   sea.eye_slope = sea_data.eye_slope;
 }
 
-// Waves first to first + kLanes - 1: a processor's lanes read one each. All lanes call these, or none.
+// Waves first to first + kLanes - 1: a processor's lanes read one each. All lanes call these, or none. Beyond the last
+// amplitudes are 0.
 struct SomeWaves {
   vec2 wave_number;
   float amplitude_m, angle_rad;
+  float size;  // of the wave number
 };
-SomeWaves some_waves(uint first) {
-  uint i = min(first + (by_lanes() ? lane() : 0u), kMaxWaves - 1u);
-  return SomeWaves(sea_data.waves[i].wave_number, sea_data.waves[i].amplitude_m, sea_data.waves[i].angle_rad);
+SomeWaves waves_at(uint i, uint count) {
+  Wave wave = sea_data.waves[min(i, kMaxWaves - 1u)];
+  return SomeWaves(wave.wave_number, i < count ? wave.amplitude_m : 0.0, wave.angle_rad, length(wave.wave_number));
 }
-Wave wave_of(SomeWaves some, uint first, uint k) {
-  if (!by_lanes()) return sea_data.waves[min(first + k, kMaxWaves - 1u)];
+SomeWaves some_waves(uint first, uint count) { return waves_at(first + (by_lanes() ? lane() : 0u), count); }
+SomeWaves wave_of(SomeWaves some, uint first, uint k, uint count) {
+  if (!by_lanes()) return waves_at(first + k, count);
   vec2 number = vec2(from_lane(some.wave_number.x, k), from_lane(some.wave_number.y, k));
-  return Wave(number, from_lane(some.amplitude_m, k), from_lane(some.angle_rad, k));
+  return SomeWaves(number, from_lane(some.amplitude_m, k), from_lane(some.angle_rad, k), from_lane(some.size, k));
 }
 
 struct SeaPoint {
@@ -71,12 +74,11 @@ float sea_height(vec2 at, float footprint_m) {
   if (!light_has(kLightWaves)) return sum;
   uint count = min(sea.count, kHighWaves);
   for (uint first = 0u; first < count; first += kLanes) {
-    SomeWaves some = some_waves(first);
+    SomeWaves some = some_waves(first, count);
     [[unroll]] for (uint k = 0u; k < kLanes; ++k) {
-      Wave wave = wave_of(some, first, k);
-      if (first + k >= count) wave.amplitude_m = 0.0;
+      SomeWaves wave = wave_of(some, first, k, count);
       float angle = dot(wave.wave_number, at) + wave.angle_rad;
-      sum += wave_kept(length(wave.wave_number) * footprint_m) * wave.amplitude_m * wave_sine(angle + 1.5707963);
+      sum += wave_kept(wave.size * footprint_m) * wave.amplitude_m * wave_sine(angle + 1.5707963);
     }
   }
   return sum;
@@ -89,19 +91,18 @@ SeaPoint sea_at(vec2 at, float footprint_m) {
   vec3 sum = vec3(0.0);
   float resolved = 0.0, least_m = least_of(footprint_m);
   for (uint first = 0u; first < sea.count; first += kLanes) {
-    SomeWaves some = some_waves(first);
-    if (length(wave_of(some, first, 0u).wave_number) * least_m > 3.0) break;  // so are all that follow
+    SomeWaves some = some_waves(first, sea.count);
+    if (wave_of(some, first, 0u, sea.count).size * least_m > 3.0) break;  // so are all that follow
     [[unroll]] for (uint i = 0u; i < kLanes; ++i) {
-      Wave wave = wave_of(some, first, i);
-      vec2 number = wave.wave_number;
-      float k = length(number);
-      float amplitude_m = first + i < sea.count ? wave.amplitude_m * wave_kept(k * footprint_m) : 0.0;
-      sum.yz -= amplitude_m * wave_sine(dot(number, at) + wave.angle_rad) * number;
-      float steep = amplitude_m * k;
+      SomeWaves wave = wave_of(some, first, i, sea.count);
+      float amplitude_m = wave.amplitude_m * wave_kept(wave.size * footprint_m);
+      float angle = dot(wave.wave_number, at) + wave.angle_rad;
+      sum.yz -= amplitude_m * wave_sine(angle) * wave.wave_number;
+      if (first + i < kHighWaves) sum.x += amplitude_m * wave_sine(angle + 1.5707963);
+      float steep = amplitude_m * wave.size;
       resolved += 0.5 * steep * steep;
     }
   }
-  sum.x = sea_height(at, footprint_m);
   point.height_m = sum.x;
   point.slope = sum.yz;
   point.rough2 = sea.fine_slope2 + max(sea.slope2 - resolved, 0.0);
