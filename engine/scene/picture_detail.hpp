@@ -12,10 +12,13 @@ struct PictureDetail {
   // Share of the picture's sides that is shaded; a camera's own terms: 1. Above 1 a whole number: a
   // pixel is the mean of so many a side, whatever the camera's terms.
   double resolution = 1.0;
-  double shadow_size = 1.0;             // texels a side of the sun's maps, times those named
-  std::uint32_t cascades = 4;           // of those named, at most: the widest are kept
-  std::uint32_t shadow_samples = 9;     // rings of taps round a shadow's middle
-  std::uint32_t visibility_step = 2;    // pixels a side to one of the visibility image: 1 to 4
+  double shadow_size = 1.0;           // texels a side of the sun's maps, times those named
+  std::uint32_t cascades = 4;         // of those named, at most: the widest are kept
+  std::uint32_t shadow_samples = 9;   // rings of taps round a shadow's middle
+  std::uint32_t visibility_step = 2;  // pixels a side to one of the visibility image: 1 to 4
+  // Pixels by which coarser meshes may differ (MeshLevel); of the sun's maps texels. 0: none is
+  // coarser.
+  double mesh_error = 0.5;
   double occlusion_samples = 1.0;       // times those named
   std::uint32_t inscatter_samples = 4;  // of a lamp's beam along a sight
   std::uint32_t waves = 48;             // of the surface, the longest first; at most
@@ -26,6 +29,7 @@ struct PictureDetail {
 };
 
 inline constexpr double kMostResolution = 4.0;
+inline constexpr double kMostMeshError = 8.0;
 
 inline constexpr std::string_view kPictureLevels[] = {"draft", "standard", "reference"};
 struct PictureLevel {

@@ -191,8 +191,8 @@ inline constexpr auto kCameraKeys =
                         "vignette",      "linear",    "spectrum"});
 inline constexpr auto kDetailKeys =
     std::to_array<Key>({"resolution", "shadow_size", "cascades", "shadow_samples",
-                        "visibility_step", "occlusion_samples", "inscatter_samples", "waves",
-                        "scatter_levels", "shaft_samples", "particles"});
+                        "visibility_step", "mesh_error", "occlusion_samples", "inscatter_samples",
+                        "waves", "scatter_levels", "shaft_samples", "particles"});
 inline constexpr auto kPortKeys = std::to_array<Key>({"kind", "offset"});
 inline constexpr auto kFocusKeys =
     std::to_array<Key>({"distance_m", "f_number", "focal_length_mm", "samples"});

@@ -49,6 +49,7 @@ PictureDetail read_detail(TableReader& reader) {
   whole("cascades", detail.cascades, 1, 4);
   whole("shadow_samples", detail.shadow_samples, 1, 64);
   whole("visibility_step", detail.visibility_step, 1, 4);
+  detail.mesh_error = knobs.number("mesh_error", detail.mesh_error, {0, kMostMeshError});
   detail.occlusion_samples =
       knobs.number("occlusion_samples", detail.occlusion_samples, {0.125, 8});
   whole("inscatter_samples", detail.inscatter_samples, 1, 64);

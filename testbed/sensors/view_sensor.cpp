@@ -30,13 +30,6 @@ std::uint32_t averaged(const scene::PictureDetail& detail) {
   return detail.resolution > 1.0 ? static_cast<std::uint32_t>(std::lround(detail.resolution)) : 1u;
 }
 
-// Pixels by which coarser meshes may differ (scene::MeshLevel); of the sun's maps texels. None
-// where each pixel has a shadow of its own.
-double mesh_error_px(const scene::PictureDetail& detail) {
-  constexpr std::array<double, 4> kByStep{0.0, 0.5, 1.0, 2.5};
-  return kByStep[std::clamp(detail.visibility_step, 1u, 4u) - 1u];
-}
-
 // Gains that make a white card at the camera neutral, as the water leaves daylight there.
 Result<Vec3f> automatic_white(const shared::Lighting& lighting, const scene::Water* water,
                               const scene::CameraTerms& terms) {
@@ -359,7 +352,7 @@ Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::str
   const bool apart = coarse || (capture.color && averaged(request.detail) > 1);
   const bool follows = capture.color && request.camera &&
                        (request.camera->terms.focus || request.camera->terms.shutter);
-  work.mesh_error_px = arrays && !apart ? 0.0 : mesh_error_px(request.detail);
+  work.mesh_error_px = arrays && !apart ? 0.0 : request.detail.mesh_error;
   SensorFrame::Views out{.near_m = work.views.views.front().near_m,
                          .width = work.views.width,
                          .height = work.views.height,
@@ -372,7 +365,7 @@ Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::str
         g, declare(prefix, surface ? render::GBufferKind::kSurface : render::GBufferKind::kShape,
                    work.views, work.draws, surface ? render::GBufferParts{} : parts_of(capture),
                    arrays ? 0.0
-                          : std::max(mesh_error_px(request.detail), request.thrift.mesh_error_px)));
+                          : std::max(request.detail.mesh_error, request.thrift.mesh_error_px)));
     out.depth = g.depth;
     out.normal = g.normal;
     out.label = g.label;
@@ -384,7 +377,7 @@ Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::str
     NERITIC_TRY_STATUS(check_size(frame.device, label + ", finely shaded,", work.shaded_views));
     NERITIC_TRY(const render::GBuffer shading,
                 declare(prefix + "shaded ", render::GBufferKind::kSurface, work.shaded_views,
-                        work.shaded_draws, {}, mesh_error_px(request.detail)));
+                        work.shaded_draws, {}, request.detail.mesh_error));
     NERITIC_TRY(out.color, declare_color(frame, prefix, shading, g, work.shaded_views,
                                          work.shaded_draws, request, work));
   } else if (capture.color) {

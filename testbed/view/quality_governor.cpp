@@ -28,6 +28,7 @@ const std::array<scene::PictureDetail, kLightLevels> kLight{{{},
                                                               .cascades = 2,
                                                               .shadow_samples = 3,
                                                               .visibility_step = 4,
+                                                              .mesh_error = 2.5,
                                                               .occlusion_samples = 0.25,
                                                               .inscatter_samples = 1,
                                                               .waves = 16,
@@ -38,6 +39,7 @@ const std::array<scene::PictureDetail, kLightLevels> kLight{{{},
                                                               .cascades = 1,
                                                               .shadow_samples = 1,
                                                               .visibility_step = 4,
+                                                              .mesh_error = 2.5,
                                                               .occlusion_samples = 0.125,
                                                               .inscatter_samples = 1,
                                                               .waves = 8,
@@ -48,6 +50,7 @@ const std::array<scene::PictureDetail, kLightLevels> kLight{{{},
                                                               .cascades = 1,
                                                               .shadow_samples = 1,
                                                               .visibility_step = 4,
+                                                              .mesh_error = 2.5,
                                                               .occlusion_samples = 0.125,
                                                               .inscatter_samples = 1,
                                                               .waves = 4,
@@ -100,6 +103,7 @@ scene::PictureDetail detail_at(const scene::PictureDetail& camera, std::uint32_t
   out.cascades = std::min(out.cascades, level.cascades);
   out.shadow_samples = std::min(out.shadow_samples, level.shadow_samples);
   out.visibility_step = std::max(out.visibility_step, level.visibility_step);
+  out.mesh_error = std::max(out.mesh_error, level.mesh_error);
   out.occlusion_samples = std::min(out.occlusion_samples, level.occlusion_samples);
   out.inscatter_samples = std::min(out.inscatter_samples, level.inscatter_samples);
   out.waves = std::min(out.waves, level.waves);

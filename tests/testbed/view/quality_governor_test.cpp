@@ -140,6 +140,7 @@ TEST(QualityGovernor, LightComesDownKnobByKnob) {
     EXPECT_LE(now.cascades, before.cascades);
     EXPECT_LE(now.shadow_samples, before.shadow_samples);
     EXPECT_GE(now.visibility_step, before.visibility_step);
+    EXPECT_GE(now.mesh_error, before.mesh_error);
     EXPECT_LE(now.occlusion_samples, before.occlusion_samples);
     EXPECT_LE(now.inscatter_samples, before.inscatter_samples);
     EXPECT_LE(now.waves, before.waves);
