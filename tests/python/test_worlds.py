@@ -259,6 +259,21 @@ class Worlds(unittest.TestCase):
             kept.tick(1)
             self.assertEqual(kept.step, step + 1)
 
+    def test_a_tick_that_is_cancelled_before_its_first_step_ends(self):
+        run = neritic.World._run
+
+        def late(world, steps):
+            time.sleep(0.2)
+            return run(world, steps)
+
+        async def main():
+            await asyncio.wait_for(anext(world.ticks(240 * 3600)), 0.1)
+
+        with neritic.open(DIVE, seed=1) as world, unittest.mock.patch.object(neritic.World, "_run", late):
+            with self.assertRaises(asyncio.TimeoutError):
+                asyncio.run(main())
+            self.assertLess(world.step, 240 * 3600)
+
     def test_close_ends_a_tick_of_another_thread(self):
         world, ends = neritic.open(DIVE, seed=1), []
 

@@ -175,8 +175,9 @@ class World:
             try:
                 of = await asyncio.shield(running)
             except asyncio.CancelledError:
-                self._core.stop()
-                await asyncio.wait([running])
+                while not running.done():  # a stop between two parts of the tick, or before its first, ends nothing
+                    self._core.stop()
+                    await asyncio.wait([running], timeout=0.01)
                 running.exception()  # that it was stopped is no news
                 raise
             self._call_back()
