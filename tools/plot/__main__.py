@@ -4,6 +4,7 @@ The key "picture" of the data says which picture it is; README.md lists them. Ex
 1 could not write, 2 bad data or usage, 3 matplotlib is missing. One line on stderr says why.
 """
 import argparse
+import gc
 import json
 import os
 import sys
@@ -58,6 +59,7 @@ def main():
     parser.add_argument("--out", help="the picture, .png (default: the data's name with .png)")
     parser.add_argument("--all", action="store_true", help="a dive: every panel, beneath the page of its story")
     asked = parser.parse_args()
+    gc.disable()  # a page fits into memory, and its process ends with it
     stem = asked.data.removesuffix(".json").removesuffix(".plot")
     try:
         data = read(asked.data)
