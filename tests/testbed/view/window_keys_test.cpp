@@ -90,7 +90,7 @@ TEST_F(WindowKeys, F9GoesBackToTheStateOfF5ToTheLastBit) {
 TEST_F(WindowKeys, PanelsAreHiddenAndShownAgainAndAWindowWithoutThemGoesOn) {
   const std::vector<std::string> shots = {"key F12", "file neritic_0001.png", "wait 0.5", "key F12",
                                           "file neritic_0002.png"};
-  std::vector<std::string> hidden = {"wait 0.3", "key F2", "wait 7"};  // past the key's note
+  std::vector<std::string> hidden = {"wait 0.3", "key F2", "wait 5.2"};  // past the key's note
   hidden.insert(hidden.end(), shots.begin(), shots.end());
   hidden.push_back("key Escape");
   const test::WindowRun run = drive("", hidden);
@@ -290,8 +290,8 @@ TEST_F(WindowKeys, InstrumentsOverTheViewKeepVulkansRules) {
 TEST_F(WindowKeys, TheInsetGivesWayWithTheViewWhereFramesAreLate) {
   const std::string scene = (test::source_dir() / "assets/scenes/dive.toml").string();
   const test::WindowRun run = test::drive_window(
-      scratch_.path(), "'" + scene + "' --size 640x360 --seconds 10 --timeline t.png",
-      {"wait 4", "key n"});
+      scratch_.path(), "'" + scene + "' --size 640x360 --seconds 7 --timeline t.png",
+      {"wait 3", "key n"});
   if (test::may_skip_without_device()) GTEST_SKIP() << run.err;
   ASSERT_EQ(run.status, 0) << run.err;
   const auto data = nlohmann::json::parse(test::text_of(scratch_ / "t.plot.json"), nullptr, false);
