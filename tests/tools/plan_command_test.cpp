@@ -14,6 +14,7 @@
 #include "engine/core/json.hpp"
 #include "engine/scene/image_file.hpp"
 #include "tests/support/support.hpp"
+#include "tests/tools/undrawn.hpp"
 #include "tools/neritic/plan_gas_curves.hpp"
 
 namespace neritic::tools {
@@ -26,10 +27,11 @@ struct PlanSaid {
   std::string out, error;
 };
 
-PlanSaid said_by(const std::string& arguments) {
+PlanSaid said_by(const std::string& arguments, const char* before = "") {
   const test::ScratchFolder folder;
-  const std::string command = NERITIC_BINARY_DIR "/tools/neritic " + arguments + " > " +
-                              (folder / "out").string() + " 2> " + (folder / "error").string();
+  const std::string command =
+      fmt::format("{} " NERITIC_BINARY_DIR "/tools/neritic {} > {} 2> {}", before, arguments,
+                  (folder / "out").string(), (folder / "error").string());
   PlanSaid said;
   const int raw = std::system(command.c_str());
   said.status = WIFEXITED(raw) ? WEXITSTATUS(raw) : -1;
@@ -171,7 +173,9 @@ TEST(PlanCommand, JsonAndPicturesAreWritten) {
               " --plot " + (folder / "p.png").string());
   EXPECT_EQ(said.status, 0) << said.error;
   EXPECT_GT(std::filesystem::file_size(folder / "plan/plan.png"), 20000u);
-  EXPECT_GT(std::filesystem::file_size(folder / "p.png"), 20000u);
+  EXPECT_EQ(read_file(folder / "p.png").value(), read_file(folder / "plan/plan.png").value());
+  EXPECT_EQ(read_text(folder / "p.plot.json").value(),
+            read_text(folder / "plan/plan.plot.json").value());
   const auto json = parse_json(read_text(folder / "plan/plan.json").value()).value();
   EXPECT_EQ(json["stops"].size(), 8u);
   EXPECT_EQ(json["stops"][1]["gas"], "EAN50");
@@ -289,7 +293,7 @@ TEST(PlanCommand, ALogThatHidesItsDiveIsRefusedAndOneBadSampleIsNamed) {
   const test::ScratchFolder folder;
   const auto replayed = [&](const std::string& rows, const std::string& with = "") {
     EXPECT_TRUE(write_text(folder / "d.csv", "time_s,depth_m\n" + rows).ok());
-    return said_by("plan --log " + (folder / "d.csv").string() + with);
+    return said_by("plan --log " + (folder / "d.csv").string() + with, test::kUndrawn);
   };
   const PlanSaid hidden = replayed("0,0\n120,nan\n1200,30\n1800,0\n");
   EXPECT_EQ(hidden.status, 2);
@@ -377,7 +381,8 @@ TEST(PlanCommand, ALogOfSeveralVehiclesIsOneOfThem) {
   EXPECT_EQ(json["samples"], 61);
   EXPECT_EQ(json["deepest_m"], 3.0);
   EXPECT_TRUE(json["no_stop_min"].is_null());  // no limit at 3 m
-  ASSERT_EQ(said_by(of_log + " --vehicle diver --out " + (folder / "out").string()).status, 0);
+  const std::string out = " --out " + (folder / "out").string();
+  ASSERT_EQ(said_by(of_log + " --vehicle diver" + out, test::kUndrawn).status, 0);
   const std::string rows = read_text(folder / "out/log.csv").value();
   EXPECT_THAT(rows, HasSubstr("600,3,air,0,,0,0,0.3,"));
   EXPECT_THAT(rows, testing::Not(HasSubstr("inf")));

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
 #include "diver/gas_label.hpp"
 #include "engine/core/check.hpp"
@@ -33,15 +35,21 @@ std::string conditions(const PlanFlags& flags, const diver::DecoEnvironment& whe
   return out;
 }
 
-// --plot's picture, and the one in --out's folder; whether what was asked for is drawn.
+// --plot's picture, and the one in --out's folder, which is drawn once for both; whether what was
+// asked for is drawn.
 Result<bool> write_pictures(const PlanFlags& flags, const char* name, const PlanPicture& picture,
                             const DiveTrace& trace) {
   const nlohmann::json data = plan_picture_data(picture, trace);
-  bool drawn = true;
-  for (const auto& file : {flags.plot, flags.out.empty() ? flags.out : flags.out / name}) {
-    if (file.empty()) continue;
-    NERITIC_TRY(const bool this_one, write_picture(file, data));
-    drawn = drawn && this_one;
+  if (flags.out.empty()) return write_picture(flags.plot, data);
+  const std::filesystem::path in_folder = flags.out / name;
+  NERITIC_TRY(const bool drawn, write_picture(in_folder, data));
+  if (flags.plot.empty()) return drawn;
+  for (const auto& [from, to] :
+       {std::pair(picture_data_path(in_folder), picture_data_path(flags.plot)),
+        std::pair(in_folder, flags.plot)}) {
+    if (from == in_folder && !drawn) break;
+    NERITIC_TRY(const std::vector<std::byte> bytes, read_file(from));
+    NERITIC_TRY_STATUS(write_file(to, bytes));
   }
   return drawn;
 }
