@@ -101,9 +101,9 @@ pitch_deg = -90
 swim = { speed_m_s = 0.45, waypoints_m = [[0, -17, -24]] }
 model = ")" + model + "\"\n")
                   .ok());
-  const std::string flags =
-      "--headless --seconds 60 --log-rate 1 --log " + file("a.csv") + " --plot " + file("a.png");
-  const Outcome told = dive(flags, "up.toml"), json = dive(flags + " --json", "up.toml");
+  const std::string flags = "--headless --seconds 60 --log-rate 1 --log " + file("a.csv");
+  const Outcome told = dive(flags + " --plot " + file("a.png"), "up.toml"),
+                json = dive(flags + " --json", "up.toml");
   ASSERT_EQ(told.status, 0) << told.err;
   EXPECT_NE(told.out.find("\ndiver: changes to tank 2 (EAN50) at "), std::string::npos) << told.out;
   const auto said = parse_json(json.out).value()["humans"][0];

@@ -11,6 +11,7 @@
 #include "engine/core/json.hpp"
 #include "tests/support/support.hpp"
 #include "tests/tools/page_words.hpp"
+#include "tests/tools/undrawn.hpp"
 #include "tools/common/curves.hpp"
 
 namespace neritic::tools {
@@ -34,14 +35,10 @@ const std::string kModule =
     "/usr/bin/python3 -B '" + (test::source_dir() / "tools/plot").string() + "'";
 
 TEST_F(Picture, WithoutMatplotlibTheDataIsWrittenAndOneLineSaysWhatToInstall) {
-  ASSERT_TRUE(make_folder(folder_ / "matplotlib").ok());
-  ASSERT_TRUE(write_text(folder_ / "matplotlib/__init__.py",
-                         "raise ModuleNotFoundError('none here', name='matplotlib')\n")
-                  .ok());
-  const std::string dive = fmt::format(
-      "PYTHONPATH='{}' '{}/tools/neritic' -q dive '{}' --headless --seconds 1 --plot {}",
-      folder_.path().string(), NERITIC_BINARY_DIR,
-      (test::source_dir() / "assets/scenes/mission.toml").string(), file("a.png"));
+  const std::string dive =
+      fmt::format("{} '{}/tools/neritic' -q dive '{}' --headless --seconds 1 --plot {}",
+                  test::kUndrawn, NERITIC_BINARY_DIR,
+                  (test::source_dir() / "assets/scenes/mission.toml").string(), file("a.png"));
   EXPECT_EQ(run(dive), 0) << said();
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.png"));
   EXPECT_NE(said().find("a.png: not drawn: no python3 here has matplotlib; tools/setup plots "),
