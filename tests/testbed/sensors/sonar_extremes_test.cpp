@@ -118,7 +118,7 @@ TEST_F(SonarExtremes, AperturesOfATenthDegreeAndAFullTurn) {
       if (aperture_deg < 1.0) {
         sonar.elevation_rad = sonar.azimuth_rad;
         sonar.semi_angle_rad = radians(0.05);
-        sonar.bins_elevation = 16;  // patterns reach beyond it, by as many rows a degree
+        sonar.bins_elevation = 8;  // patterns reach beyond it, by as many rows a degree
       }
       sonar.terms = every_term();
       if (aperture_deg < 1.0) {
@@ -278,7 +278,7 @@ TEST_F(SonarExtremes, AFloorSeenAtAHundredthOfADegree) {
       (std::cos(farthest) - std::cos(nearest)) / radians(0.02);  // of sin over all rows
   EXPECT_NEAR(total(frames.at(0)) / frames[0].image.n_azimuth / mean, 1.0, 0.05);
   // Patterns reach a thousand apertures beyond it, by as many rows a degree.
-  scene.sonars[0].bins_elevation = 32;
+  scene.sonars[0].bins_elevation = 16;
   scene.sonars[0].terms = every_term();
   expect_sane(pings(device(), scene), "grazing, every term");
 }
