@@ -236,26 +236,20 @@ TEST_P(Golden, SceneLooksAndSoundsAsItDid) {
 }
 
 // Suites whose cases share a process, and with it the device's pipelines, which cost half of a
-// case: those of quick runs, and the others in thirds, so that both cores have some.
-enum class Share { kQuick, kFirst, kSecond, kThird };
-std::vector<Case> cases_of(Share share) {
-  std::vector<Case> quick, others;
-  for (const Case& c : read_cases())
-    (c.name == "wreck" || c.name == "sonars" || c.name == "dive" ? quick : others).push_back(c);
-  if (share == Share::kQuick) return quick;
-  const auto part = static_cast<std::size_t>(share) - static_cast<std::size_t>(Share::kFirst);
-  return {others.begin() + static_cast<std::ptrdiff_t>(part * others.size() / 3),
-          others.begin() + static_cast<std::ptrdiff_t>((part + 1) * others.size() / 3)};
+// case: those of quick runs, and the others, which ctest begins beside suites as long.
+std::vector<Case> cases_of(bool of_quick_runs) {
+  std::vector<Case> cases = read_cases();
+  std::erase_if(cases, [&](const Case& c) {
+    return (c.name == "wreck" || c.name == "sonars" || c.name == "dive") != of_quick_runs;
+  });
+  return cases;
 }
 std::string case_name(const ::testing::TestParamInfo<Case>& info) {
   return info.param.name;
 }
 
-INSTANTIATE_TEST_SUITE_P(QuickCases, Golden, ::testing::ValuesIn(cases_of(Share::kQuick)),
-                         case_name);
-INSTANTIATE_TEST_SUITE_P(CasesA, Golden, ::testing::ValuesIn(cases_of(Share::kFirst)), case_name);
-INSTANTIATE_TEST_SUITE_P(CasesB, Golden, ::testing::ValuesIn(cases_of(Share::kSecond)), case_name);
-INSTANTIATE_TEST_SUITE_P(CasesC, Golden, ::testing::ValuesIn(cases_of(Share::kThird)), case_name);
+INSTANTIATE_TEST_SUITE_P(QuickCases, Golden, ::testing::ValuesIn(cases_of(true)), case_name);
+INSTANTIATE_TEST_SUITE_P(Cases, Golden, ::testing::ValuesIn(cases_of(false)), case_name);
 
 }  // namespace
 }  // namespace neritic::tools
