@@ -9,7 +9,7 @@ Result<graph::ImageHandle> Renderer::declare_forward(
     graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle hdr,
     const GBuffer& gbuffer, const GpuScene& scene, const DeformedGeometry& deformed,
     const ViewSet& views, const DrawList& draws, const shared::Lighting& lighting,
-    std::uint32_t inscatter_samples) {
+    std::uint32_t inscatter_samples, FramePictures* pictures) {
   if (draws.blended.empty()) return hdr;
   std::vector<MaskedDraws> masked;
   for (const std::uint32_t mask : view_masks_of(gbuffer.layers, device_)) {
@@ -20,6 +20,7 @@ Result<graph::ImageHandle> Renderer::declare_forward(
                                                  .inscatter_samples = inscatter_samples}));
     masked.push_back({mask, std::move(prepared)});
   }
+  const std::vector<graph::ImageHandle> shown = pictures_in(scene, draws.blended, pictures);
   struct Data {
     graph::ImageHandle hdr;
   };
@@ -30,6 +31,8 @@ Result<graph::ImageHandle> Renderer::declare_forward(
         data.hdr = builder.write(hdr, graph::Access::kColorAttachment);
         builder.read(gbuffer.depth, graph::Access::kDepthTest);
         if (deformed.positions) builder.read(deformed.positions, graph::Access::kVertexBuffer);
+        for (const graph::ImageHandle image : shown)
+          builder.read(image, graph::Access::kSampledFragment);
       },
       [this, gbuffer, masked = std::move(masked), deformed, lighting, &scene, &views, &draws](
           const Data& data, graph::PassContext& context) {

@@ -47,7 +47,7 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
                                           GBufferKind kind, const GpuScene& scene,
                                           const FrameState& state, const DeformedGeometry& deformed,
                                           const ViewSet& views, const DrawList& draws,
-                                          const GBufferParts& parts) {
+                                          const GBufferParts& parts, FramePictures* pictures) {
   const bool surface = kind == GBufferKind::kSurface;
   NERITIC_CHECK(!surface || parts == GBufferParts{}, "{}shading needs all parts", prefix);
   const bool motion = kind != GBufferKind::kGeometry && state.motion;
@@ -105,6 +105,7 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
         record_gbuffer(g, first, masked, inputs, context);
       });
   if (glowing.empty()) return plain;
+  const std::vector<graph::ImageHandle> shown = pictures_in(scene, draws.opaque, pictures);
   return graph.add_pass<GBuffer>(
       prefix + "emission",
       [&](graph::PassBuilder& builder, GBuffer& g) {
@@ -115,6 +116,8 @@ Result<GBuffer> Renderer::declare_gbuffer(graph::FrameGraph& graph, const std::s
         g.emissive = builder.write(
             builder.create_image(prefix + "emissive", {kEmissiveFormat, g.width, g.height, layers}),
             kColor);
+        for (const graph::ImageHandle image : shown)
+          builder.read(image, graph::Access::kSampledFragment);
         read_deformed(builder);
       },
       [this, inputs, glowing = std::move(glowing)](const GBuffer& g, graph::PassContext& context) {

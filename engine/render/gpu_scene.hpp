@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/core/result.hpp"
@@ -12,6 +13,7 @@
 #include "engine/gpu/pipeline.hpp"
 #include "engine/gpu/resources.hpp"
 #include "engine/render/clusters.hpp"
+#include "engine/scene/object_pictures.hpp"
 #include "engine/scene/scene.hpp"
 #include "shared/raster.h"
 
@@ -23,6 +25,14 @@ struct GpuMaterial {
   VkDescriptorSet set = VK_NULL_HANDLE;
   std::uint32_t flags = 0;  // shared::kMaterial...
   bool double_sided = false, mask = false, blend = false, emissive = false;
+  std::uint32_t picture = kNone;  // of GpuScene::pictures: it glows with that
+};
+
+// The image of a picture that changes (scene::ObjectPictures); black at first.
+struct GpuPicture {
+  std::uint32_t place = 0;            // an index into the places that the scene was made with
+  const gpu::Image* image = nullptr;  // sRGB with all mips
+  std::uint64_t number = 0;           // of the picture that it has; 0: none
 };
 
 // A coarser version of a primitive (engine/scene/mesh_levels.hpp).
@@ -72,8 +82,11 @@ struct DrawGroup {
 class GpuScene {
  public:
   // Uploads everything the scene's objects use. material_layout: set 1 of the raster pipelines.
+  // places: where objects show pictures that change; those whose model has no such material cost
+  // nothing.
   static Result<std::unique_ptr<GpuScene>> create(gpu::Device& device, const scene::Scene& scene,
-                                                  VkDescriptorSetLayout material_layout);
+                                                  VkDescriptorSetLayout material_layout,
+                                                  std::span<const scene::PicturePlace> places = {});
 
   ~GpuScene();
 
@@ -83,6 +96,8 @@ class GpuScene {
   const gpu::Buffer& skin() const;
   const gpu::Buffer& morphs() const;
   const std::vector<GpuMaterial>& materials() const;
+  // One a place that some material has.
+  std::span<GpuPicture> pictures();
   const std::vector<DrawGroup>& groups() const { return groups_; }
   bool has_emission() const;
   bool has_thin() const;  // some material lets diffuse light through

@@ -7,6 +7,7 @@
 
 #include "engine/core/log.hpp"
 #include "engine/gpu/frames.hpp"
+#include "engine/render/halved.hpp"
 
 namespace neritic::render {
 namespace {
@@ -74,27 +75,6 @@ std::uint32_t flags_of(const scene::Material& m, bool vertex_colors) {
   flag(m.transmissive, shared::kMaterialTransmissive);
   flag(m.diffuse_transmission > 0.0f, shared::kMaterialThin);
   return flags;
-}
-
-// Half as wide and high (at least 1), each pixel the mean of those it covers. The mean of sRGB
-// colour is taken of its squares, which are nearly linear.
-ImageU8 halved(const ImageU8& image, bool srgb) {
-  ImageU8 out(std::max(image.width / 2, 1u), std::max(image.height / 2, 1u), image.channels);
-  for (std::uint32_t y = 0; y < out.height; ++y)
-    for (std::uint32_t x = 0; x < out.width; ++x)
-      for (std::uint32_t c = 0; c < image.channels; ++c) {
-        const bool squares = srgb && c < 3;
-        double sum = 0.0;
-        for (const std::uint32_t i : {0u, 1u})
-          for (const std::uint32_t j : {0u, 1u}) {
-            const double value = image.at(std::min(2 * x + i, image.width - 1),
-                                          std::min(2 * y + j, image.height - 1), c);
-            sum += squares ? value * value : value;
-          }
-        const double mean = squares ? std::sqrt(sum / 4.0) : sum / 4.0;
-        out.at(x, y, c) = static_cast<std::uint8_t>(mean + 0.5);
-      }
-  return out;
 }
 
 // The image itself where no side is over limit, else halved into smaller until that is so.
@@ -244,6 +224,38 @@ Result<std::uint32_t> MaterialBuilder::material_of(std::size_t model_index, int 
   return index;
 }
 
+Result<std::uint32_t> MaterialBuilder::add_picture(std::size_t place_index,
+                                                   const scene::PicturePlace& place) {
+  for (std::uint32_t i = 0; i < out_.pictures.size(); ++i)
+    if (out_.pictures[i].place == place_index) return i;
+  picture_images_.push_back(static_cast<std::uint32_t>(out_.images.size()));
+  ImageU8 black(place.width, place.height, 4, 0);
+  for (std::size_t alpha = 3; alpha < black.data.size(); alpha += 4) black.data[alpha] = 255;
+  NERITIC_TRY_STATUS(
+      add_image(fmt::format("picture of {} {}", scene_->objects[place.object].name, place.name),
+                black, true));
+  out_.pictures.push_back({.place = static_cast<std::uint32_t>(place_index)});
+  return static_cast<std::uint32_t>(out_.pictures.size() - 1);
+}
+
+Result<std::uint32_t> MaterialBuilder::with_picture(std::size_t model_index, int material,
+                                                    bool vertex_colors, std::size_t place_index,
+                                                    const scene::PicturePlace& place) {
+  scene::Material glowing =
+      scene_->models[model_index]->materials[static_cast<std::size_t>(material)];
+  glowing.emissive = Vec3f(1.0f);
+  glowing.emissive_texture = {};
+  NERITIC_TRY(const std::uint32_t picture, add_picture(place_index, place));
+  NERITIC_TRY(const std::uint32_t sampler,
+              sampler_for({scene::Wrap::kClampToEdge, scene::Wrap::kClampToEdge}));
+  NERITIC_TRY_STATUS(add_material(model_index, glowing, vertex_colors));
+  textures_.back().emissive = {picture_images_[picture], sampler};
+  GpuMaterial& added = out_.materials.back();
+  added.flags |= shared::kMaterialEmissiveTexture;
+  added.picture = picture;
+  return static_cast<std::uint32_t>(out_.materials.size() - 1);
+}
+
 Result<GpuSceneMaterials> MaterialBuilder::finish(VkDescriptorSetLayout layout) {
   // Each material's constants at an offset that any device accepts (at most 256).
   constexpr std::size_t kStride = (sizeof(MaterialData) + 255) / 256 * 256;
@@ -276,6 +288,8 @@ Result<GpuSceneMaterials> MaterialBuilder::finish(VkDescriptorSetLayout layout) 
     gpu::write_descriptors(*device_, set, material_bindings(), resources);
     out_.materials[i].set = set;
   }
+  for (std::size_t i = 0; i < out_.pictures.size(); ++i)
+    out_.pictures[i].image = &out_.images[picture_images_[i]];
   return std::move(out_);
 }
 

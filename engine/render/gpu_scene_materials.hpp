@@ -15,6 +15,7 @@ namespace neritic::render {
 struct GpuSceneMaterials {
   std::vector<GpuMaterial> materials;
   std::vector<gpu::Image> images;
+  std::vector<GpuPicture> pictures;
   std::vector<gpu::Sampler> samplers;
   gpu::Buffer constants;
   std::unique_ptr<gpu::DescriptorArena> descriptors;
@@ -29,6 +30,9 @@ class MaterialBuilder {
   // The GPU material of a primitive: with vertex colours it is another one than without. Uploads
   // its textures when first asked for. material -1: glTF's default.
   Result<std::uint32_t> material_of(std::size_t model_index, int material, bool vertex_colors);
+  // The same glowing with the picture of a place, of which there is one image.
+  Result<std::uint32_t> with_picture(std::size_t model_index, int material, bool vertex_colors,
+                                     std::size_t place_index, const scene::PicturePlace& place);
   // Uploads the constants and writes the sets; nothing is added after it.
   Result<GpuSceneMaterials> finish(VkDescriptorSetLayout layout);
 
@@ -46,6 +50,7 @@ class MaterialBuilder {
   Result<TextureUse> texture_use(std::size_t model_index, const scene::TextureRef& ref, bool srgb);
   Result<std::uint32_t> sampler_for(const scene::Sampler& sampler);
   Status add_material(std::size_t model_index, const scene::Material& material, bool vertex_colors);
+  Result<std::uint32_t> add_picture(std::size_t place_index, const scene::PicturePlace& place);
 
   gpu::Device* device_;
   const scene::Scene* scene_;
@@ -53,6 +58,7 @@ class MaterialBuilder {
   std::vector<shared::MaterialData> data_;
   std::vector<MaterialTextures> textures_;
   std::map<std::tuple<std::size_t, int, bool>, std::uint32_t> images_, material_index_;
+  std::vector<std::uint32_t> picture_images_;  // a picture's
   std::map<std::tuple<scene::Wrap, scene::Wrap, bool, bool, bool, bool>, std::uint32_t>
       sampler_index_;
 };

@@ -72,6 +72,18 @@ Renderer::InstanceStreams Renderer::upload_instances(gpu::Commands& commands, co
   return {now, commands.upload(std::span<const shared::NextInstance>(draws.next_instances)), drawn};
 }
 
+std::vector<graph::ImageHandle> Renderer::pictures_in(const GpuScene& scene,
+                                                      const std::vector<Draw>& draws,
+                                                      FramePictures* pictures) {
+  std::vector<graph::ImageHandle> out;
+  if (!pictures) return out;
+  for (const Draw& draw : draws) {
+    const std::uint32_t picture = scene.materials()[draw.primitive->material].picture;
+    if (picture != kNone) out.push_back(pictures->image(picture));
+  }
+  return out;
+}
+
 Result<Renderer::PreparedDraws> Renderer::prepare(const GpuScene& scene, const DrawList& list,
                                                   const std::vector<Draw>& draws, GBufferKind kind,
                                                   bool forward, bool motion, bool emissive,

@@ -19,6 +19,7 @@
 #include "engine/graph/frame_graph.hpp"
 #include "engine/render/caustic_waves.hpp"
 #include "engine/render/draw_list.hpp"
+#include "engine/render/frame_pictures.hpp"
 #include "engine/render/shadow_maps.hpp"
 #include "engine/render/water_passes.hpp"
 #include "shared/camera.h"
@@ -154,10 +155,12 @@ class Renderer {
   Result<DeformedGeometry> declare_deform(graph::FrameGraph& graph, const GpuScene& scene,
                                           const FrameState& state,
                                           const std::vector<std::uint32_t>* need = nullptr);
+  // pictures: of a scene that has some, in surface G-buffers; nullptr: it has none.
   Result<GBuffer> declare_gbuffer(graph::FrameGraph& graph, const std::string& prefix,
                                   GBufferKind kind, const GpuScene& scene, const FrameState& state,
                                   const DeformedGeometry& deformed, const ViewSet& views,
-                                  const DrawList& draws, const GBufferParts& parts = {});
+                                  const DrawList& draws, const GBufferParts& parts = {},
+                                  FramePictures* pictures = nullptr);
   // Depth maps as lights see the scene, a layer each: R32's reversed depth, as a G-buffer's.
   Result<graph::ImageHandle> declare_shadow_maps(graph::FrameGraph& graph, const std::string& name,
                                                  const GpuScene& scene,
@@ -195,13 +198,11 @@ class Renderer {
   Result<graph::ImageHandle> declare_shade(graph::FrameGraph& graph, const std::string& prefix,
                                            const ShadeInputs& inputs);
   // Blended materials over the HDR picture; only declared where the draw list has some.
-  Result<graph::ImageHandle> declare_forward(graph::FrameGraph& graph, const std::string& prefix,
-                                             graph::ImageHandle hdr, const GBuffer& gbuffer,
-                                             const GpuScene& scene,
-                                             const DeformedGeometry& deformed, const ViewSet& views,
-                                             const DrawList& draws,
-                                             const shared::Lighting& lighting,
-                                             std::uint32_t inscatter_samples = 4);
+  Result<graph::ImageHandle> declare_forward(
+      graph::FrameGraph& graph, const std::string& prefix, graph::ImageHandle hdr,
+      const GBuffer& gbuffer, const GpuScene& scene, const DeformedGeometry& deformed,
+      const ViewSet& views, const DrawList& draws, const shared::Lighting& lighting,
+      std::uint32_t inscatter_samples = 4, FramePictures* pictures = nullptr);
   // The passes of the scene's water, between forward and the display picture.
   WaterPasses& water() { return water_; }
   // An HDR picture of fewer pixels: each is the mean of a square of `side` by `side` (2 to 4).
@@ -309,6 +310,10 @@ class Renderer {
                                 const std::vector<Draw>& draws, GBufferKind kind, bool forward,
                                 bool motion, bool emissive, std::uint32_t view_mask,
                                 const GBufferParts& parts, const ForwardLight& light);
+  // Images of the changing pictures that a list of draws shows.
+  static std::vector<graph::ImageHandle> pictures_in(const GpuScene& scene,
+                                                     const std::vector<Draw>& draws,
+                                                     FramePictures* pictures);
   // Objects that draw passes borrow until the graph has run.
   struct RasterInputs {
     const GpuScene& scene;

@@ -188,6 +188,7 @@ Material parse_material(Loading& loading, Field field) {
   out.occlusion_strength = unit(field["occlusionTexture"]["strength"], 1.0f);
   out.emissive_texture = parse_texture_ref(loading, field["emissiveTexture"]);
   out.detail_texture = parse_detail_ref(loading, field["extras"]["detailTexture"]);
+  out.picture = field["extras"]["picture"].text();
   // Emitted light has no upper limit: kept below 1e6 so that products stay finite.
   const float strength =
       field.extension("KHR_materials_emissive_strength")["emissiveStrength"].number_f(1.0f);

@@ -97,6 +97,10 @@ struct Material {
   // colour by up to its own value; 0.5 is no change. In a .glb it is extras.detailTexture of a
   // material: index, texCoord and repeats.
   TextureRef detail_texture;
+  // The name of a picture that a program may show here, on texture coordinates 0: where it does
+  // (object_pictures.hpp), the surface glows with it. Empty: none. In a .glb it is extras.picture
+  // of a material.
+  std::string picture;
 };
 
 enum class Wrap { kRepeat, kMirroredRepeat, kClampToEdge };

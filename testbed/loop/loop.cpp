@@ -193,6 +193,9 @@ Loop::Wanted Loop::wanted_at(const FrameTime& at, double time_s) {
   request.frame = static_cast<std::uint32_t>(sensed_);
   request.capture = sensors.capture;
   if (parts_.physics) request.simulated = &parts_.physics->motion();
+  // Before the physics reaches on for motion: they show the frame's own time.
+  if (parts_.pictures) parts_.pictures->follow();
+  request.pictures = parts_.pictures;
   if (schedule_) {
     take_due(*schedule_, sensors, parts_.view ? parts_.view->ping_every() : 1, request);
   } else {

@@ -47,7 +47,9 @@ struct LoopParts {
   Clock clock;
   LivePhysics* physics = nullptr;
   std::optional<LoopSensors> sensors;
-  FrameView* view = nullptr;           // with sensors
+  FrameView* view = nullptr;  // with sensors
+  // With sensors, whose session has its places: what objects show.
+  scene::ObjectPictures* pictures = nullptr;
   std::vector<SampleSource*> sources;  // polled by the physics
   std::vector<StepSink*> step_sinks;
   std::vector<FrameSink*> frame_sinks;

@@ -9,6 +9,7 @@
 
 #include "engine/render/views.hpp"
 #include "engine/scene/motion.hpp"
+#include "engine/scene/object_pictures.hpp"
 
 namespace neritic::testbed {
 
@@ -87,6 +88,9 @@ struct FrameRequest {
   std::vector<ViewsRequest> views;
   // Moves some objects instead of their tracks and clips; nullptr: none.
   const scene::SimulatedMotion* simulated = nullptr;
+  // What objects show, at the places that the session was created with; nullptr: it has none, or
+  // they stay as they are.
+  scene::ObjectPictures* pictures = nullptr;
 
   // By place in cameras and sonars.
   const Capture& camera_capture(std::size_t i) const {

@@ -41,15 +41,17 @@ Session::~Session() {
   if (device_.handle()) device_.wait_idle();
 }
 
-Result<std::unique_ptr<Session>> Session::create(gpu::Device& device, scene::Scene scene) {
+Result<std::unique_ptr<Session>> Session::create(gpu::Device& device, scene::Scene scene,
+                                                 std::span<const scene::PicturePlace> places) {
   std::unique_ptr<Session> session(new Session(device));
   session->scene_ = std::move(scene);
   NERITIC_TRY(session->frames_, gpu::Frames::create(device));
   session->frames_->enable_timing(true);
   session->executor_ = std::make_unique<graph::Executor>(*session->frames_);
   NERITIC_TRY(session->renderer_, render::Renderer::create(device));
-  NERITIC_TRY(session->gpu_scene_, render::GpuScene::create(device, session->scene_,
-                                                            session->renderer_->material_layout()));
+  NERITIC_TRY(session->gpu_scene_,
+              render::GpuScene::create(device, session->scene_,
+                                       session->renderer_->material_layout(), places));
   NERITIC_TRY(EchoTables tables, EchoTables::create(device, session->scene_));
   session->sun_maps_ = std::make_unique<SunMaps>();
   session->skylight_ = std::make_unique<Skylight>();
@@ -159,11 +161,13 @@ Result<std::unique_ptr<SensorFrame>> Session::declare_sensors(graph::FrameGraph&
     work.poses = motions_of(participants_of(scene_), motion, request.time_s);
   NERITIC_TRY(const render::DeformedGeometry deformed,
               renderer_->declare_deform(graph, *gpu_scene_, work.state, &work.deform_need));
+  render::FramePictures pictures(graph, *gpu_scene_, request.pictures);
   const FrameParts parts{
       graph,         device_,          *renderer_, scene_,    *gpu_scene_,
       motion,        work.state,       deformed,   readback_, request.seed.value_or(scene_.seed),
       work.light,    *sun_maps_,       *skylight_, moving_,   still_,
-      request.frame, work.deform_need, *snow_,     *bubbles_, waves_};
+      request.frame, work.deform_need, *snow_,     *bubbles_, waves_,
+      pictures};
   const auto add = [&](const std::string& label, const ViewsRequest& set, std::size_t index,
                        auto& works, std::vector<SensorFrame::Views>& out) -> Status {
     works.push_back(std::make_unique<FrameWork::Picture>());

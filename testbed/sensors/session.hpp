@@ -31,7 +31,9 @@ class Skylight;
 
 class Session {
  public:
-  static Result<std::unique_ptr<Session>> create(gpu::Device& device, scene::Scene scene);
+  // places: where objects show pictures that change.
+  static Result<std::unique_ptr<Session>> create(gpu::Device& device, scene::Scene scene,
+                                                 std::span<const scene::PicturePlace> places = {});
   ~Session();
 
   const scene::Scene& scene() const { return scene_; }

@@ -184,7 +184,7 @@ Result<graph::ImageHandle> declare_lit(const FrameParts& frame, const std::strin
                                             .inscatter_samples = detail.inscatter_samples}));
   NERITIC_TRY(hdr, frame.renderer.declare_forward(frame.graph, prefix, hdr, g, frame.gpu_scene,
                                                   frame.deformed, views, draws, lighting,
-                                                  detail.inscatter_samples));
+                                                  detail.inscatter_samples, &frame.pictures));
   if (scattered) {
     scene::ForwardScatter scatter = *frame.scene.water->forward_scatter;
     scatter.levels = std::min(scatter.levels, detail.scatter_levels);
@@ -345,7 +345,7 @@ Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::str
         frame.scene, frame.gpu_scene, frame.state, views,
         {.mesh_error_px = mesh_error_px, .deform_need = &frame.deform_need});
     return frame.renderer.declare_gbuffer(frame.graph, name, kind, frame.gpu_scene, frame.state,
-                                          frame.deformed, views, draws, parts);
+                                          frame.deformed, views, draws, parts, &frame.pictures);
   };
   // Lens and image sensor work on the whole picture.
   const bool coarse = capture.color && request.detail.resolution < 1.0 && !request.camera;

@@ -64,6 +64,7 @@ struct FrameParts {
   render::SnowField& snow;
   render::BubbleField& bubbles;
   const SeaWaves& waves;  // of the surface; still where the scene names none
+  render::FramePictures& pictures;
 };
 
 // A view set in one frame: data that the passes borrow, and the buffers that the host reads.

@@ -431,7 +431,10 @@ void World::Parts::begin_loop() {
                                             : Clock::steps(step + 1, step_s),
                  .physics = physics,
                  .step_sinks = {receiver.get()}};
-  if (consumer) made.sensors = LoopSensors{.session = session.get(), .consumers = {&*consumer}};
+  if (consumer) {
+    made.sensors = LoopSensors{.session = session.get(), .consumers = {&*consumer}};
+    made.pictures = displays.get();
+  }
   loop.emplace(std::move(made));
   loop->begin();
 }

@@ -11,7 +11,8 @@ Status World::Parts::make_session() {
   wanted.validation = options.validation;
   wanted.cache_folder = gpu::default_cache_folder();
   NERITIC_TRY(device, gpu::Device::create(wanted));
-  NERITIC_TRY(session, Session::create(*device, scene));
+  displays = std::make_unique<WristDisplays>(*physics, hud::Units::kMetric);
+  NERITIC_TRY(session, Session::create(*device, scene, displays->places()));
   image_receiver =
       std::make_unique<ImageReceiver>(*receiver, static_cast<std::uint32_t>(first_image), true);
   return {};

@@ -6,6 +6,7 @@
 
 #include "engine/gpu/device.hpp"
 #include "testbed/devices/devices.hpp"
+#include "testbed/instruments/wrist_displays.hpp"
 #include "testbed/loop/loop.hpp"
 #include "testbed/record/recording_switch.hpp"
 #include "testbed/world/world.hpp"
@@ -101,6 +102,7 @@ struct World::Parts {
   const Devices* devices = nullptr;        // absent: none, or in lock-step
   // Images. In the order of creation: each uses those before it.
   std::unique_ptr<gpu::Device> device;
+  std::unique_ptr<WristDisplays> displays;
   std::unique_ptr<Session> session;
   std::unique_ptr<ImageReceiver> image_receiver;
   std::map<std::uint32_t, double> wished;  // rates by stream

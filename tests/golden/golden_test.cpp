@@ -12,6 +12,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/json.hpp"
 #include "engine/scene/image_file.hpp"
+#include "testbed/instruments/wrist_displays.hpp"
 #include "testbed/loop/loop.hpp"
 #include "tests/golden/compare.hpp"
 #include "tests/support/gpu_fixture.hpp"
@@ -209,12 +210,17 @@ TEST_P(Golden, SceneLooksAndSoundsAsItDid) {
     const auto& state = physics->newest();
     numbers["state"] = {{"step", state.step}, {"hash", fmt::format("{:016x}", state.hash)}};
   }
-  NERITIC_ASSERT_OK(const auto session, Session::create(device(), std::move(scene)));
+  std::optional<WristDisplays> displays;
+  if (physics) displays.emplace(*physics, hud::Units::kMetric);
+  scene::ObjectPictures* const pictures = displays ? &*displays : nullptr;
+  NERITIC_ASSERT_OK(const auto session,
+                    Session::create(device(), std::move(scene), picture_places(pictures)));
   sensors.session = session.get();
   LastFrame last;
   Loop loop({.clock = Clock::simulated(c.time_s, 1.0 / 30.0),
              .physics = physics.get(),
              .sensors = sensors,
+             .pictures = pictures,
              .frame_sinks = {&last},
              .stop = {.frames = 1}});
   NERITIC_ASSERT_STATUS(loop.run());

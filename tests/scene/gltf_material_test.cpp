@@ -65,6 +65,16 @@ TEST(GltfLoader, ADetailTextureRepeatsAsItsExtrasSay) {
   EXPECT_FALSE(model->materials[2].detail_texture.present());
 }
 
+TEST(GltfLoader, ExtrasNameThePictureThatAProgramMayShow) {
+  Builder b;
+  b.quad();
+  b.json["materials"] = {{{"extras", {{"picture", "gauge"}}}}, {{"extras", {{"note", "none"}}}}};
+  const auto model = b.load();
+  ASSERT_LOADS(model);
+  EXPECT_EQ(model->materials[0].picture, "gauge");
+  EXPECT_EQ(model->materials[1].picture, "");
+}
+
 TEST(GltfLoader, SamplersKeepFiltersAndWraps) {
   Builder b;
   b.json["images"] = {{{"uri", "data:image/png;base64,AAAA"}}};

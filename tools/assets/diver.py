@@ -101,6 +101,8 @@ def make(look):
     )
     m_met = g.material("metal", (0.80, 0.81, 0.83, 1), metal=1.0, rough=0.28)
     m_glass = g.material("glass", (0.10, 0.14, 0.16, 0.25), metal=0.0, rough=0.05, blend=True)
+    # Dark where no program shows its picture on it.
+    m_display = g.material("display", (0.012, 0.013, 0.014, 1), rough=0.12, picture="dive computer")
     parts = gear(look)
     for part in parts["rubber"]:
         part.col[:, :3] = np.minimum(part.col[:, :3] * T.RUBBER_GAIN, 1)
@@ -112,6 +114,7 @@ def make(look):
             (join(parts["rubber"]), m_rub),
             (join(parts["metal"]), m_met),
             (join(parts["glass"]), m_glass),
+            (join(parts["display"]), m_display),
         ],
     )
     node = {}

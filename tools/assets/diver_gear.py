@@ -1,6 +1,6 @@
 """All that the diver carries, each part already bound to the skeleton: jacket, tank, hoses.
 
-gear() returns lists of Parts by material: cloth, rubber, metal, glass.
+gear() returns lists of Parts by material: cloth, rubber, metal, glass, display.
 """
 import numpy as np
 
@@ -8,7 +8,7 @@ import noise as N
 import sdf as S
 from diver_body import BOUND, NAMES, fold, rigid, skin, torso
 from diver_looks import YELLOW
-from diver_trim import BLACK, DARK, belt, extras, fins, mask
+from diver_trim import BLACK, DARK, belt, display, extras, fins, mask
 from mesh import box_uv, shade
 from shapes import box, curve, cylinder, revolve, ring_band, tube
 
@@ -227,4 +227,5 @@ def gear(look):
         "rubber": rub + m_rub + hoses() + belt() + fins(look) + extras(look),
         "metal": met + m_met,
         "glass": m_glass,
+        "display": [display()],
     }

@@ -3,7 +3,7 @@ import numpy as np
 
 import noise as N
 from diver_body import ANKLE, ARM, FORE, SHOULDER, UPPER, rigid, torso
-from mesh import join, loft, shade
+from mesh import Part, join, loft, shade
 from shapes import box, circle, curve, cylinder, revolve, ring_band, round_rect, sphere, tube
 
 # linear colours of the gear
@@ -191,21 +191,38 @@ def fins(look):
     return out
 
 
+# The dive computer's place on the right arm; on_left_wrist mirrors it.
+COMPUTER_AT = SHOULDER + ARM * (UPPER + FORE - 0.07) + 0.042 * np.array([1, 1, 0]) / np.sqrt(2)
+DISPLAY = (0.0528, 0.044)  # along the arm and across, as hud/display.hpp has it
+
+
+def on_left_wrist(part):
+    """x towards the fingers, y off the arm's back, z backwards while the arm hangs."""
+    return rigid(part.rot("z", -45).at(*COMPUTER_AT).mirrored(), "forearm_l")
+
+
+def display():
+    """The computer's display, a flat sheet: its picture's right is towards the fingers, its top where +z is."""
+    w, h = DISPLAY
+    corner = np.array([[-1, 1], [1, 1], [1, -1], [-1, -1]]) / 2
+    sheet = Part(
+        np.column_stack([w * corner[:, 0], np.full(4, 0.0137), h * corner[:, 1]]),
+        [[0, 1, 2], [0, 2, 3]],
+        np.column_stack([0.5 + corner[:, 0], 0.5 - corner[:, 1]]),
+        np.tile([0.0, 1, 0], (4, 1)),
+    )
+    return on_left_wrist(sheet)
+
+
 def extras(look):
-    """Dive computer on the left wrist, knife on the right shin."""
-    at = SHOULDER + ARM * (UPPER + FORE - 0.07)
-    lcd, ink = (0.19, 0.23, 0.20), (0.02, 0.022, 0.02)
-    figures = [(-0.010, -0.011, 0.010, 0.004), (-0.010, 0.006, 0.010, 0.008), (0.008, -0.008, 0.007, 0.005), (0.008, 0.010, 0.007, 0.004)]
-    wrist = join(  # x along the arm, y off its back, so that the strap is round the wrist
+    """Dive computer without its display, knife on the right shin."""
+    wrist = join(
         [
-            box(0.056, 0.022, 0.054, 0.009, 1).colored(DARK),
-            box(0.040, 0.003, 0.042, 0.001, 1).at(0, 0.0115, 0).colored(lcd),
+            box(0.066, 0.022, 0.058, 0.009, 1).colored(DARK),
+            box(DISPLAY[0] + 0.004, 0.004, DISPLAY[1] + 0.004, 0.0015, 1).at(0, 0.0115, 0).colored(BLACK),
             ring_band(0.039, 0.044, 0.024, 24).rot("x", 90).rot("z", 90).at(0, -0.042, 0).colored(BLACK),
         ]
-        + [box(w, 0.001, d, 0.0003, 1).at(x, 0.0132, z).colored(ink) for x, z, w, d in figures]
     )
-    out = np.array([0.042, 0.042, 0]) / np.sqrt(2)
-    wrist = wrist.rot("z", -45).at(*(at + out)).mirrored()
     knife = join(
         [
             box(0.030, 0.20, 0.018, 0.007, 1).colored(BLACK),
@@ -218,6 +235,6 @@ def extras(look):
     )
     knife = knife.rot("y", 90).at(0.166, -0.60, 0.012)
     straps = straps.at(0.100, -0.585, 0.012)
-    return [rigid(shade(wrist.tiled(0.3)), "forearm_l")] + [
+    return [on_left_wrist(shade(wrist.tiled(0.3)))] + [
         rigid(shade(p.tiled(0.3)), "lower_leg_r") for p in (knife, straps)
     ]

@@ -120,6 +120,7 @@ class Glb:
         blend=False,
         thin=None,
         detail=None,
+        picture=None,
     ):
         pbr = {"baseColorFactor": list(color), "metallicFactor": metal, "roughnessFactor": rough}
         m = {"name": name, "pbrMetallicRoughness": pbr}
@@ -143,6 +144,8 @@ class Glb:
             self.extend(m, "KHR_materials_diffuse_transmission", {"diffuseTransmissionFactor": thin})
         if detail is not None:  # texture and repeats: detail.py
             m["extras"] = {"detailTexture": {"index": detail[0], "repeats": detail[1]}}
+        if picture is not None:  # the name of a picture that a program may show here
+            m.setdefault("extras", {})["picture"] = picture
         self.doc["materials"].append(m)
         return len(self.doc["materials"]) - 1
 

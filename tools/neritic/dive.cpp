@@ -11,6 +11,7 @@
 #include "engine/xr/offscreen.hpp"
 #include "engine/xr/openxr/headset.hpp"
 #include "testbed/devices/devices.hpp"
+#include "testbed/instruments/wrist_displays.hpp"
 #include "testbed/loop/loop.hpp"
 #include "testbed/output/recorded_images.hpp"
 #include "testbed/sensors/sight_check.hpp"
@@ -306,7 +307,12 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::stri
   NERITIC_TRY(const Chosen chosen, choose_sensors(flags, scene));
   const scene::Camera camera = scene.cameras[chosen.camera];
   NERITIC_TRY_STATUS(make_device(flags, scene, screen));
-  NERITIC_TRY(const auto session, Session::create(*screen.device, std::move(scene)));
+  const hud::Units units = flags.units == "imperial" ? hud::Units::kImperial : hud::Units::kMetric;
+  std::optional<WristDisplays> displays;
+  if (physics) displays.emplace(*physics, units);
+  scene::ObjectPictures* const pictures = displays ? &*displays : nullptr;
+  NERITIC_TRY(const auto session,
+              Session::create(*screen.device, std::move(scene), picture_places(pictures)));
   NERITIC_TRY_STATUS(make_display(flags, camera, screen));
   if (physics) physics->hasten_steps(true);
   std::unique_ptr<Devices> devices;
@@ -349,7 +355,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::stri
            .devices = devices.get(),
            .beside_headset = screen.beside_headset(),
            .swim = flags.swim && screen.window && !screen.headset,
-           .units = flags.units == "imperial" ? hud::Units::kImperial : hud::Units::kMetric,
+           .units = units,
            .task = flags.task}));
   std::unique_ptr<ServedDive> served;
   if (!flags.serve.empty()) {
@@ -419,6 +425,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::stri
                                     .own_rates = true,
                                     .consumers = consumers},
              .view = view.get(),
+             .pictures = pictures,
              .sources = sources,
              .step_sinks = step_sinks,
              .stop = {.frames = flags.frames,

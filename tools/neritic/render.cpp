@@ -7,6 +7,7 @@
 #include "engine/core/files.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/refusal.hpp"
+#include "testbed/instruments/wrist_displays.hpp"
 #include "testbed/loop/loop.hpp"
 #include "testbed/output/frame_files.hpp"
 #include "testbed/sensors/sight_check.hpp"
@@ -420,7 +421,11 @@ Result<std::string> render_once(const RenderFlags& asked, RenderedRun& told) {
     NERITIC_TRY(replay, Replay::of(std::move(*recorded), flags.replay, physics->world()));
   }
   if (flags.frames > 1) warn_of_rates(scene, sensors, rate_hz);
-  NERITIC_TRY(const auto session, Session::create(*device, std::move(scene)));
+  std::optional<WristDisplays> displays;
+  if (physics) displays.emplace(*physics, hud::Units::kMetric);
+  scene::ObjectPictures* const pictures = displays ? &*displays : nullptr;
+  NERITIC_TRY(const auto session,
+              Session::create(*device, std::move(scene), picture_places(pictures)));
   log_info("ready to render after {:.0f} ms: {} triangles", to_ms(now_ns() - start),
            session->gpu_scene().triangles());
   session->keep_plan_dump(!flags.dump_graph.empty());
@@ -457,6 +462,7 @@ Result<std::string> render_once(const RenderFlags& asked, RenderedRun& told) {
       {.clock = Clock::simulated(flags.time_s, step_s),
        .physics = physics.get(),
        .sensors = sensors,
+       .pictures = pictures,
        .sources = sources,
        .step_sinks = step_sinks,
        .frame_sinks = {&files, &first, &sight},
