@@ -183,11 +183,10 @@ class DrawListBuilder {
       const DrawnLarger* larger = a.label < larger_of_.size() ? larger_of_[a.label] : nullptr;
       const Vec3 own_half_m = job ? job->half_m : primitive.half_m;
       if (bounded && !larger &&
-          !(spheres_.may_see(center, own_radius_m * stretch + error_m) &&
-            spheres_.may_see_box(
-                center,
-                {Vec3(m[0]) * own_half_m.x, Vec3(m[1]) * own_half_m.y, Vec3(m[2]) * own_half_m.z},
-                error_m)))
+          !spheres_.may_see_box(
+              center, own_radius_m * stretch + error_m,
+              {Vec3(m[0]) * own_half_m.x, Vec3(m[1]) * own_half_m.y, Vec3(m[2]) * own_half_m.z},
+              error_m))
         continue;
       const double order_m = blend ? center_m : nearness(center_m, own_radius_m * stretch);
       std::uint32_t level = 0;

@@ -1,6 +1,6 @@
 // The pictures of a scene's objects that change (scene::ObjectPictures), in one frame: each that is
 // in sight and differs from what its image has is uploaded by a pass of its own, before the first
-// pass that draws it. Lives until the graph has run, as the scene does; rendering thread.
+// pass that draws it. Only the scene must live until the graph has run; rendering thread.
 #pragma once
 
 #include <vector>

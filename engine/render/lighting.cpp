@@ -117,12 +117,19 @@ double beam_share(const shared::SpotLight& spot, double cosine) {
   return std::lerp(double(spot.profile[low]), double(spot.profile[low + 1]), step - low);
 }
 
+// The largest share of its axis's intensity that a lamp sends anywhere: a ring of light has a dark
+// axis.
+double brightest_share(const shared::SpotLight& spot) {
+  return spot.profiled == 0 ? 1.0 : double(*std::ranges::max_element(spot.profile));
+}
+
 // What lamps light lies this far before them, most often; never as near as kTooNear_m.
 constexpr double kLit_m = 3.0, kTooNear_m = 0.1;
 
-// Illuminance by all lamps of a white surface on the axis of one of them, square to it and kLit_m
-// away, less what the water takes from its sight to the origin; of the brightest of these surfaces,
-// and of that half: most lit ones are farther away or oblique.
+// Illuminance by all lamps of a white surface on the axis of one of them (as if it sent its
+// brightest there), square to it and kLit_m away, less what the water takes from its sight to the
+// origin; of the brightest of these surfaces, and of that half: most lit ones are farther away or
+// oblique.
 double lamplight_lx(const shared::Lighting& light) {
   const std::span lamps(light.lamps, light.lamp_count);
   double brightest = 0.0;
@@ -133,7 +140,9 @@ double lamplight_lx(const shared::Lighting& light) {
       const Vec3 way = at - Vec3(spot.position);
       const double way_m = std::max(glm::length(way), kTooNear_m);
       const double lambert = glm::dot(way, Vec3(lit.direction)) / way_m;
-      const double beam = beam_share(spot, glm::dot(way, Vec3(spot.direction)) / way_m);
+      const double beam = &spot == &lit
+                              ? brightest_share(spot)
+                              : beam_share(spot, glm::dot(way, Vec3(spot.direction)) / way_m);
       for (int i = 0; lambert > 0.0 && i < 3; ++i)
         sum += kLuminance[i] * spot.intensity_cd[i] * beam * lambert / (way_m * way_m) *
                std::exp(-light.beam_attenuation[i] * (way_m + glm::length(at)));

@@ -155,7 +155,7 @@ class Renderer {
   Result<DeformedGeometry> declare_deform(graph::FrameGraph& graph, const GpuScene& scene,
                                           const FrameState& state,
                                           const std::vector<std::uint32_t>* need = nullptr);
-  // pictures: of a scene that has some, in surface G-buffers; nullptr: it has none.
+  // pictures: the scene's, which surface G-buffers show; nullptr: it has none.
   Result<GBuffer> declare_gbuffer(graph::FrameGraph& graph, const std::string& prefix,
                                   GBufferKind kind, const GpuScene& scene, const FrameState& state,
                                   const DeformedGeometry& deformed, const ViewSet& views,

@@ -111,12 +111,15 @@ bool SphereCulling::may_see(const Vec3& center_m, double radius_m) const {
   return false;
 }
 
-bool SphereCulling::may_see_box(const Vec3& center_m, const std::array<Vec3, 3>& halves_m,
-                                double margin_m) const {
+bool SphereCulling::may_see_box(const Vec3& center_m, double radius_m,
+                                const std::array<Vec3, 3>& halves_m, double margin_m) const {
   const auto outside = [&](const Plane& plane) {
+    const double inside_m = glm::dot(plane.normal, center_m) + plane.offset_m;
+    if (inside_m < -radius_m) return true;
+    if (inside_m >= 0.0) return false;  // of most things: their boxes need not be looked at
     double reach_m = margin_m;
     for (const Vec3& half : halves_m) reach_m += std::abs(glm::dot(plane.normal, half));
-    return glm::dot(plane.normal, center_m) + plane.offset_m < -reach_m;
+    return inside_m < -reach_m;
   };
   if (within_ && outside(*within_)) return false;
   return std::ranges::any_of(

@@ -84,10 +84,10 @@ class SphereCulling {
   // From where the set's centers count, in the world.
   const Vec3& origin_m() const { return origin_m_; }
   bool may_see(const Vec3& center_from_origin_m, double radius_m) const;
-  // The same of a box that may lie askew: from its center to the middles of three sides. margin_m:
-  // how far beyond it something may reach.
-  bool may_see_box(const Vec3& center_from_origin_m, const std::array<Vec3, 3>& halves_m,
-                   double margin_m) const;
+  // The same of a box that may lie askew, within a sphere round its center: from there to the
+  // middles of three sides. margin_m: how far beyond the box something may reach.
+  bool may_see_box(const Vec3& center_from_origin_m, double radius_m,
+                   const std::array<Vec3, 3>& halves_m, double margin_m) const;
   // The same of all that a sphere sweeps on the way from one place to the other.
   bool may_see_between(const Vec3& from_origin_m, const Vec3& to_m, double radius_m) const;
   // Whether the ball may be seen, and if so the part of the planes that cuts it; part is made anew.

@@ -187,8 +187,13 @@ Material parse_material(Loading& loading, Field field) {
   out.occlusion_texture = parse_texture_ref(loading, field["occlusionTexture"]);
   out.occlusion_strength = unit(field["occlusionTexture"]["strength"], 1.0f);
   out.emissive_texture = parse_texture_ref(loading, field["emissiveTexture"]);
-  out.detail_texture = parse_detail_ref(loading, field["extras"]["detailTexture"]);
-  out.picture = field["extras"]["picture"].text();
+  // Extras are any program's: ours are read where they have our shape.
+  const Field extras = field["extras"];
+  if (extras.present() && extras.place()->is_object()) {
+    out.detail_texture = parse_detail_ref(loading, extras["detailTexture"]);
+    if (const Field picture = extras["picture"]; picture.present() && picture.place()->is_string())
+      out.picture = picture.text();
+  }
   // Emitted light has no upper limit: kept below 1e6 so that products stay finite.
   const float strength =
       field.extension("KHR_materials_emissive_strength")["emissiveStrength"].number_f(1.0f);

@@ -29,7 +29,7 @@ struct PictureDetail {
 };
 
 inline constexpr double kMostResolution = 4.0;
-inline constexpr double kMostMeshError = 8.0;
+inline constexpr double kMostMeshError = 2.5;  // beyond, casters throw shadows that are not there
 
 inline constexpr std::string_view kPictureLevels[] = {"draft", "standard", "reference"};
 struct PictureLevel {

@@ -274,6 +274,30 @@ class Worlds(unittest.TestCase):
                 asyncio.run(main())
             self.assertLess(world.step, 240 * 3600)
 
+    def test_ticks_that_are_cancelled_twice_end_as_if_once(self):
+        run = neritic.World._run
+
+        def late(world, steps):
+            time.sleep(0.2)
+            return run(world, steps)
+
+        async def endless(world):
+            async for _ in world.ticks(240 * 3600):
+                pass
+
+        async def main():
+            task = asyncio.create_task(endless(world))
+            for _ in range(2):
+                await asyncio.sleep(0.05)
+                task.cancel()
+            with self.assertRaises(asyncio.CancelledError):
+                await task
+            world.tick(1)  # no other goes on
+
+        with neritic.open(DIVE, seed=1) as world, unittest.mock.patch.object(neritic.World, "_run", late):
+            asyncio.run(main())
+            self.assertLess(world.step, 240 * 3600)
+
     def test_close_ends_a_tick_of_another_thread(self):
         world, ends = neritic.open(DIVE, seed=1), []
 

@@ -74,12 +74,17 @@ TEST(Lighting, AutoExposureOverTheSeaKeepsTheSky) {
 
 // A dark sea with lamps side by side at the origin that look ahead, of so many cd together.
 Result<shared::Lighting> light_by_lamps(double sun_deg, double sum_cd, std::size_t count = 1,
-                                        double depth_m = 3.0) {
+                                        double depth_m = 3.0,
+                                        std::optional<scene::LampProfile> profile = {}) {
   scene::Scene scene;
   scene.sun = scene::Sun{.elevation_rad = radians(sun_deg)};
   scene.water = scene::Water{.type = "II", .scattering = true};
   scene.lamps.resize(count);
-  for (scene::Lamp& lamp : scene.lamps) lamp.intensity_cd = sum_cd / double(count);
+  for (scene::Lamp& lamp : scene.lamps) {
+    lamp.intensity_cd = sum_cd / double(count);
+    lamp.profile = profile;
+    if (profile) lamp.outer_cone_rad = profile->edge_rad;
+  }
   FrameState state;
   state.world_from_lamp.resize(count);
   for (Pose& pose : state.world_from_lamp) pose.position_m.y = -depth_m;
@@ -98,6 +103,15 @@ TEST(Lighting, AutoExposureByLampsAloneBurnsNothingOut) {
       white += Vec3(0.2126, 0.7152, 0.0722)[i] * std::exp(-6.0 * light->beam_attenuation[i]);
     EXPECT_NEAR(1000.0 * white / kPi * light->exposure, 2.0, 2e-3) << count;
   }
+}
+
+TEST(Lighting, AutoExposureByARingOfLightIsThatOfAnEvenBeam) {
+  const auto even = light_by_lamps(-30.0, 9000.0);
+  const auto ring = light_by_lamps(
+      -30.0, 9000.0, 1, 3.0,
+      scene::table_profile({{0.0, 0.0}, {radians(30.0), 1.0}, {radians(60.0), 0.0}}));
+  ASSERT_TRUE(even.ok() && ring.ok());
+  EXPECT_NEAR(ring->exposure / even->exposure, 1.0, 0.1);
 }
 
 TEST(Lighting, LampsAreNothingToAutoExposureInDaylight) {

@@ -107,15 +107,17 @@ TEST(SphereCulling, ABoxIsSeenWhereAPointOfItIs) {
     const Vec3 half_m(within(0, 0.3), within(0, 0.3), within(0, 2.0));
     const std::array<Vec3, 3> halves_m{turn * Vec3(half_m.x, 0, 0), turn * Vec3(0, half_m.y, 0),
                                        turn * Vec3(0, 0, half_m.z)};
-    const bool box = culling.may_see_box(center_m, halves_m, 0.0);
+    const double radius_m = glm::length(half_m);
+    const bool box = culling.may_see_box(center_m, radius_m, halves_m, 0.0);
     seen += box;
-    by_ball += culling.may_see(center_m, glm::length(half_m));
+    by_ball += culling.may_see(center_m, radius_m);
     const Vec3 at_m = center_m + within(-1, 1) * halves_m[0] + within(-1, 1) * halves_m[1] +
                       within(-1, 1) * halves_m[2];
     if (culling.may_see(at_m, 0.0)) {
       EXPECT_TRUE(box);
     }
-    EXPECT_TRUE(!box || culling.may_see_box(center_m, halves_m, 0.1));
+    EXPECT_TRUE(!box || culling.may_see(center_m, radius_m));
+    EXPECT_TRUE(!box || culling.may_see_box(center_m, radius_m + 0.1, halves_m, 0.1));
   }
   EXPECT_GT(seen, 500);
   EXPECT_LT(seen, 0.9 * by_ball);

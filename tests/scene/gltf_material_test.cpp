@@ -75,6 +75,20 @@ TEST(GltfLoader, ExtrasNameThePictureThatAProgramMayShow) {
   EXPECT_EQ(model->materials[1].picture, "");
 }
 
+// Extras belong to any program: what has another shape there is none of ours.
+TEST(GltfLoader, ExtrasOfOtherProgramsAreNoError) {
+  Builder b;
+  b.quad();
+  b.json["materials"] = {{{"extras", 5}},
+                         {{"extras", "a note"}},
+                         {{"extras", {{"picture", 5}}}},
+                         {{"extras", {{"picture", nullptr}}}},
+                         {{"extras", {{"picture", {{"file", "a.png"}}}}}}};
+  const auto model = b.load();
+  ASSERT_LOADS(model);
+  for (const Material& material : model->materials) EXPECT_EQ(material.picture, "");
+}
+
 TEST(GltfLoader, SamplersKeepFiltersAndWraps) {
   Builder b;
   b.json["images"] = {{{"uri", "data:image/png;base64,AAAA"}}};

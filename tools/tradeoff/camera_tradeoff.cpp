@@ -43,7 +43,7 @@ std::vector<KnobSetting> settings_of(bool quick) {
        [&](PictureDetail& d, double v) { d.shadow_samples = whole(v); });
   knob("visibility_step", {4, 3, 2, 1},
        [&](PictureDetail& d, double v) { d.visibility_step = whole(v); });
-  knob("mesh_error", {8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.0},
+  knob("mesh_error", {2.5, 2.0, 1.0, 0.5, 0.25, 0.0},
        [](PictureDetail& d, double v) { d.mesh_error = v; });
   knob("occlusion_samples", {0.25, 0.5, 1.0, 2.0, 4.0},
        [](PictureDetail& d, double v) { d.occlusion_samples = v; });

@@ -177,7 +177,10 @@ class World:
             except asyncio.CancelledError:
                 while not running.done():  # a stop between two parts of the tick, or before its first, ends nothing
                     self._core.stop()
-                    await asyncio.wait([running], timeout=0.01)
+                    try:
+                        await asyncio.wait([running], timeout=0.01)
+                    except asyncio.CancelledError:
+                        pass  # asked once more: it is on its way
                 running.exception()  # that it was stopped is no news
                 raise
             self._call_back()
