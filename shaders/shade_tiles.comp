@@ -28,18 +28,17 @@ void main() {
   ivec2 last = textureSize(depth_image, 0).xy - 1;
   ivec2 first = ivec2(tile * kShadeGroup);
   float nearest = 0.0;
-  bool meets = push.sea_off_m <= 0.0;
+  bool meets = !(push.sea_off_m > 0.0);
   for (int y = 0; y < int(kShadeGroup); ++y)
     for (int x = 0; x < int(kShadeGroup); ++x) {
       ivec2 at = min(first + ivec2(x, y), last);
       float depth = texelFetch(depth_image, ivec3(at, 0), 0).r;
       nearest = max(nearest, depth);
-      // What a wearer does not see of himself (depth 1) hides nothing here.
+      // Depth 1 marks what is hidden from the wearer (hidden.vert): behind it counts as open water.
       vec3 ray = push.ray_corner + (float(at.x) + 0.5) * push.ray_dx + (float(at.y) + 0.5) * push.ray_dy;
       meets = meets || may_meet_sea(ray, depth > 0.0 && depth < 1.0 ? push.near_m / depth : 1e9);
     }
-  bool sea = meets && tile.y >= push.sea_first && tile.y < push.sea_end;
-  uint list = (nearest > 0.0 ? kShadeTileSolid : 0u) + (sea ? kShadeTileSea : 0u);
+  uint list = (nearest > 0.0 ? kShadeTileSolid : 0u) + (meets ? kShadeTileSea : 0u);
   uint slot = atomicAdd(tiles[kShadeTileHead * list], 1u);
   tiles[kShadeTileHead * kShadeTileLists + push.wide * push.high * list + slot] = tile.x | tile.y << 16;
   if (tile == uvec2(0u))

@@ -123,7 +123,7 @@ double brightest_share(const shared::SpotLight& spot) {
   return spot.profiled == 0 ? 1.0 : double(*std::ranges::max_element(spot.profile));
 }
 
-// What lamps light lies this far before them, most often; never as near as kTooNear_m.
+// The usual distance of a surface from the lamp that lights it, and the least that is counted.
 constexpr double kLit_m = 3.0, kTooNear_m = 0.1;
 
 // Illuminance by all lamps of a white surface on the axis of one of them (as if it sent its

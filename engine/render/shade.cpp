@@ -24,39 +24,38 @@ struct ShadePart {
   const gpu::Pipeline* pipeline = nullptr;
 };
 
-// What tells whether a sight meets the sea's surface before the water has hidden it (sea_meets in
-// shaders/shared/sea_surface.glsl, with room for the waves' height).
+// Numbers that tell whether a sight meets the sea's surface before the water has hidden it
+// (sea_meets in shaders/shared/sea_surface.glsl, with room for the waves' height).
 struct SeaSight {
-  float clearest, room_m;
-  float near_off_m = 0.0f;  // the least that any view's window lies under its highest waves
+  float clearest;  // the least attenuation of a beam, 1/m
+  float off_m;     // the least that any view's window lies under its highest waves
 };
 
-SeaSight sea_sight(const ViewSet& views, const shared::Lighting& lighting,
-                   const shared::Waves& waves) {
+SeaSight sea_sight(std::span<const shared::View> eyes, const ViewSet& views,
+                   const shared::Lighting& lighting, const shared::Waves& waves) {
   SeaSight sight{std::min({lighting.beam_attenuation.x, lighting.beam_attenuation.y,
                            lighting.beam_attenuation.z}),
-                 6.0f * waves.height_rms_m + 0.05f, std::numeric_limits<float>::infinity()};
-  const auto all = gpu_views(views);
-  for (const shared::View& view : std::span(all).first(views.views.size())) {
+                 std::numeric_limits<float>::infinity()};
+  const float room_m = 6.0f * waves.height_rms_m + 0.05f;
+  for (const shared::View& view : eyes) {
     // The window that it looks through is higher than the eye (shaders/shade.comp).
     float highest = 0.0f;
     for (const float y : {0.0f, static_cast<float>(views.height)})
       for (const float x : {0.0f, static_cast<float>(views.width)})
         highest = std::max(highest, view.ray_corner.y + x * view.ray_dx.y + y * view.ray_dy.y);
-    const float off_m =
-        lighting.origin_depth_m - view.eye.y + waves.eye_height_m - highest * view.near_m;
-    sight.near_off_m = std::min(sight.near_off_m, off_m - sight.room_m);
+    sight.off_m = std::min(sight.off_m, lighting.origin_depth_m - view.eye.y + waves.eye_height_m -
+                                            highest * view.near_m - room_m);
   }
   return sight;
 }
 
 // The rows where some view's sight may meet it.
-Rows rows_of_sea(const ViewSet& views, const SeaSight& sight, std::uint32_t groups_high) {
-  if (!(sight.near_off_m > 0.0f)) return {0, groups_high};
+Rows rows_of_sea(std::span<const shared::View> eyes, const ViewSet& views, const SeaSight& sight,
+                 std::uint32_t groups_high) {
+  if (!(sight.off_m > 0.0f)) return {0, groups_high};
   std::uint32_t first = groups_high, end = 0;
-  const float least = std::max(sight.near_off_m * sight.clearest / shared::kSeaFaded, 2e-3f);
-  const auto all = gpu_views(views);
-  for (const shared::View& view : std::span(all).first(views.views.size()))
+  const float least = std::max(sight.off_m * sight.clearest / shared::kSeaFaded, 2e-3f);
+  for (const shared::View& view : eyes)
     for (std::uint32_t g = 0; g < groups_high; ++g) {
       float up = -1.0f;  // at least the sine of every sight of these rows, as rays are 1 or longer
       for (const float y : {g * 8.0f, g * 8.0f + 8.0f})
@@ -70,38 +69,24 @@ Rows rows_of_sea(const ViewSet& views, const SeaSight& sight, std::uint32_t grou
   return first < end ? Rows{first, end} : Rows{};
 }
 
-// How tiles of one view are told apart.
-shared::ShadeTilesPush tiles_push(const GBuffer& gbuffer, const ViewSet& views, Rows sea,
-                                  const SeaSight& sight) {
-  const shared::View view = gpu_views(views).front();
-  return {.wide = groups(gbuffer.width),
-          .high = groups(gbuffer.height),
-          .sea_first = sea.first,
-          .sea_end = sea.end,
-          .near_m = view.near_m,
-          .sea_off_m = sight.near_off_m,
-          .sea_clearest = sight.clearest,
-          .ray_corner = view.ray_corner,
-          .ray_dx = view.ray_dx,
-          .ray_dy = view.ray_dy};
-}
-
-// The parts of a picture by what a workgroup of them needs: the sea's surface, and with `tiled`
-// whether it shows a solid.
-std::vector<ShadePart> shade_parts(Rows sea, std::uint32_t groups_high, bool tiled) {
+// The parts of a picture that is shaded by rows: those that see the sea, and the others.
+std::vector<ShadePart> parts_by_rows(Rows sea, std::uint32_t groups_high) {
   std::vector<ShadePart> parts;
   if (sea.first < sea.end) parts.push_back({.rows = sea, .sea = true});
   if (sea.first > 0) parts.push_back({.rows = {0, sea.first}});
   if (sea.end < groups_high) parts.push_back({.rows = {sea.end, groups_high}});
-  if (!tiled) return parts;
-  std::vector<ShadePart> lists;
-  for (const std::uint32_t list : {0u, 1u, 2u, 3u}) {
-    const bool of_sea = (list & shared::kShadeTileSea) != 0;
-    if (!of_sea || sea.first < sea.end)
-      lists.push_back(
-          {.sea = of_sea, .surfaces = (list & shared::kShadeTileSolid) != 0, .list = list});
-  }
-  return lists;
+  return parts;
+}
+
+// The same by lists of tiles (shaders/shade_tiles.comp).
+std::vector<ShadePart> parts_by_tiles(bool sea) {
+  std::vector<ShadePart> parts;
+  for (std::uint32_t list = 0; list < (sea ? shared::kShadeTileLists : shared::kShadeTileSea);
+       ++list)
+    parts.push_back({.sea = (list & shared::kShadeTileSea) != 0,
+                     .surfaces = (list & shared::kShadeTileSolid) != 0,
+                     .list = list});
+  return parts;
 }
 
 }  // namespace
@@ -131,18 +116,30 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
   // Rows and tiles that see no sea are spared its waves: a CPU driver computes them for every
   // pixel.
   const std::uint32_t high = groups(gbuffer.height);
-  const SeaSight sight = sea_sight(views, lighting, waves.value_or(shared::Waves{}));
+  const auto all_eyes = gpu_views(views);
+  const std::span eyes = std::span(all_eyes).first(views.views.size());
+  const SeaSight sight = sea_sight(eyes, views, lighting, waves.value_or(shared::Waves{}));
   const Rows sea =
-      lighting.terms & shared::kLightSurface ? rows_of_sea(views, sight, high) : Rows{};
+      lighting.terms & shared::kLightSurface ? rows_of_sea(eyes, views, sight, high) : Rows{};
+  const bool sees_sea = sea.first < sea.end;
   // Tiles of water alone are shaded without what solids need. Not with several layers: a CPU's
   // driver must see which layer a workgroup reads.
   const bool tiled = gbuffer.layers == 1;
   graph::BufferHandle tiles;
   if (tiled) {
-    NERITIC_TRY(
-        tiles, declare_shade_tiles(graph, prefix, gbuffer, tiles_push(gbuffer, views, sea, sight)));
+    NERITIC_TRY(tiles,
+                declare_shade_tiles(
+                    graph, prefix, gbuffer,
+                    {.wide = groups(gbuffer.width),
+                     .high = high,
+                     .near_m = eyes[0].near_m,
+                     .sea_off_m = sees_sea ? sight.off_m : std::numeric_limits<float>::infinity(),
+                     .sea_clearest = sight.clearest,
+                     .ray_corner = eyes[0].ray_corner,
+                     .ray_dx = eyes[0].ray_dx,
+                     .ray_dy = eyes[0].ray_dy}));
   }
-  std::vector<ShadePart> parts = shade_parts(sea, high, tiled);
+  std::vector<ShadePart> parts = tiled ? parts_by_tiles(sees_sea) : parts_by_rows(sea, high);
   for (ShadePart& part : parts) {
     gpu::Pipeline& pipeline = shade_[{
         lighting.terms, lighting.lamp_count, inputs.visibility_step, inputs.inscatter_samples,
@@ -248,9 +245,10 @@ Result<graph::ImageHandle> Renderer::declare_shade(graph::FrameGraph& graph,
                 context.image(data.scattered ? data.scattered : data.hdr).view()),
             gpu::bound_buffer(shared::kShadeTiles,
                               tiles ? context.buffer(tiles).handle() : nothing_.handle())};
+        // Their layouts are the same, so what is bound for one stays bound for all.
+        commands.bind(*parts.front().pipeline, resources);
         for (const ShadePart& part : parts) {
           commands.bind_pipeline(*part.pipeline);
-          commands.bind(*part.pipeline, resources);
           if (!tiles) {
             commands.push(*part.pipeline, shared::ShadePush{part.rows.first, 0});
             commands.dispatch(groups(gbuffer.width), part.rows.end - part.rows.first,

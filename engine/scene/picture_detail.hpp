@@ -29,7 +29,8 @@ struct PictureDetail {
 };
 
 inline constexpr double kMostResolution = 4.0;
-inline constexpr double kMostMeshError = 2.5;  // beyond, casters throw shadows that are not there
+// Beyond (seen at 4), sand has a shadow that nothing throws.
+inline constexpr double kMostMeshError = 2.5;
 
 inline constexpr std::string_view kPictureLevels[] = {"draft", "standard", "reference"};
 struct PictureLevel {

@@ -30,7 +30,7 @@ void main() {
   vec4 turned = placed_normal();
   out_normal = turned.xyz;
   out_label = label_deformed.x;
-  // What the material does not use is not fetched.
+  // A driver fetches only the data that the material uses.
   out_uv = vec4((kMaterialFlags & kMaterialTextures) != 0u ? uv0 : vec2(0.0), (kMaterialFlags & kMaterialSecondUv) != 0u ? uv1 : vec2(0.0));
   out_color = (kMaterialFlags & kMaterialVertexColor) != 0u ? color : vec4(1.0);
   out_position = at;

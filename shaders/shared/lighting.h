@@ -125,10 +125,10 @@ struct ShadePush {
 struct ShadeTilesPush {
   uint wide;  // tiles of the picture
   uint high;
-  uint sea_first;  // rows of tiles that may see the sea's surface
-  uint sea_end;
   float near_m;
-  float sea_off_m;     // how far above the eye it is at least; not above 0: all tiles of these rows see it
+  // How far above the eye the sea's surface is at least. Not above 0: all tiles see it; infinite:
+  // none does.
+  float sea_off_m;
   float sea_clearest;  // the least attenuation of a beam, 1/m
   vec3 ray_corner;     // as those of View
   vec3 ray_dx;

@@ -34,6 +34,11 @@ scene::ObjectPictures::Picture WristDisplays::picture(std::size_t place) {
   return display.picture;
 }
 
+std::unique_ptr<WristDisplays> wrist_displays(const LivePhysics* physics, hud::Units units) {
+  if (!physics || physics->world().humans().empty()) return nullptr;
+  return std::make_unique<WristDisplays>(*physics, units);
+}
+
 std::span<const scene::PicturePlace> picture_places(const scene::ObjectPictures* pictures) {
   return pictures ? pictures->places() : std::span<const scene::PicturePlace>();
 }

@@ -3,6 +3,7 @@
 // The same state gives the same picture, whoever looked before. Rendering thread.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "engine/scene/object_pictures.hpp"
@@ -36,6 +37,8 @@ class WristDisplays final : public scene::ObjectPictures {
   draw2d::Canvas canvas_;                    // of all, whose fonts stay open
 };
 
+// The displays of a dive; nullptr where there is no physics or no diver in it.
+std::unique_ptr<WristDisplays> wrist_displays(const LivePhysics* physics, hud::Units units);
 // The places of displays that may be absent.
 std::span<const scene::PicturePlace> picture_places(const scene::ObjectPictures* pictures);
 

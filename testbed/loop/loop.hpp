@@ -48,7 +48,7 @@ struct LoopParts {
   LivePhysics* physics = nullptr;
   std::optional<LoopSensors> sensors;
   FrameView* view = nullptr;  // with sensors
-  // With sensors, whose session has its places: what objects show.
+  // The pictures that objects show; with sensors, whose session has their places.
   scene::ObjectPictures* pictures = nullptr;
   std::vector<SampleSource*> sources;  // polled by the physics
   std::vector<StepSink*> step_sinks;

@@ -88,8 +88,8 @@ struct FrameRequest {
   std::vector<ViewsRequest> views;
   // Moves some objects instead of their tracks and clips; nullptr: none.
   const scene::SimulatedMotion* simulated = nullptr;
-  // What objects show, at the places that the session was created with; nullptr: it has none, or
-  // they stay as they are.
+  // The pictures that objects show, at the places that the session was created with; nullptr: it
+  // has none, or they stay as they are.
   scene::ObjectPictures* pictures = nullptr;
 
   // By place in cameras and sonars.

@@ -362,10 +362,10 @@ Result<SensorFrame::Views> declare_views(const FrameParts& frame, const std::str
   if (!apart || capture.geometry() || capture.motion || follows) {
     const bool surface = capture.color && !apart;
     NERITIC_TRY(
-        g, declare(prefix, surface ? render::GBufferKind::kSurface : render::GBufferKind::kShape,
-                   work.views, work.draws, surface ? render::GBufferParts{} : parts_of(capture),
-                   arrays ? 0.0
-                          : std::max(request.detail.mesh_error, request.thrift.mesh_error_px)));
+        g,
+        declare(prefix, surface ? render::GBufferKind::kSurface : render::GBufferKind::kShape,
+                work.views, work.draws, surface ? render::GBufferParts{} : parts_of(capture),
+                arrays ? 0.0 : std::max(request.detail.mesh_error, request.thrift.mesh_error_px)));
     out.depth = g.depth;
     out.normal = g.normal;
     out.label = g.label;

@@ -11,8 +11,8 @@ Status World::Parts::make_session() {
   wanted.validation = options.validation;
   wanted.cache_folder = gpu::default_cache_folder();
   NERITIC_TRY(device, gpu::Device::create(wanted));
-  displays = std::make_unique<WristDisplays>(*physics, hud::Units::kMetric);
-  NERITIC_TRY(session, Session::create(*device, scene, displays->places()));
+  displays = wrist_displays(physics, hud::Units::kMetric);
+  NERITIC_TRY(session, Session::create(*device, scene, picture_places(displays.get())));
   image_receiver =
       std::make_unique<ImageReceiver>(*receiver, static_cast<std::uint32_t>(first_image), true);
   return {};

@@ -210,17 +210,15 @@ TEST_P(Golden, SceneLooksAndSoundsAsItDid) {
     const auto& state = physics->newest();
     numbers["state"] = {{"step", state.step}, {"hash", fmt::format("{:016x}", state.hash)}};
   }
-  std::optional<WristDisplays> displays;
-  if (physics) displays.emplace(*physics, hud::Units::kMetric);
-  scene::ObjectPictures* const pictures = displays ? &*displays : nullptr;
+  const auto displays = wrist_displays(physics.get(), hud::Units::kMetric);
   NERITIC_ASSERT_OK(const auto session,
-                    Session::create(device(), std::move(scene), picture_places(pictures)));
+                    Session::create(device(), std::move(scene), picture_places(displays.get())));
   sensors.session = session.get();
   LastFrame last;
   Loop loop({.clock = Clock::simulated(c.time_s, 1.0 / 30.0),
              .physics = physics.get(),
              .sensors = sensors,
-             .pictures = pictures,
+             .pictures = displays.get(),
              .frame_sinks = {&last},
              .stop = {.frames = 1}});
   NERITIC_ASSERT_STATUS(loop.run());

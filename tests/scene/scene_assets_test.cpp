@@ -131,8 +131,8 @@ TEST(SceneAssets, TheInstancesAreAHundredOfTwentyThousandTriangles) {
   EXPECT_EQ(hundred, 1u);
 }
 
-// What a vehicle's gripper holds lies between the jaws of its model, and nothing of the gripper is
-// in the sonar's sight or in the upper 60 % of the camera's.
+// A held thing lies between the jaws of the gripper's model. No part of the gripper is in the
+// sonar's sight or in the upper 60 % of the camera's.
 TEST(SceneAssets, TheVehiclesGripperIsWhereItHolds) {
   const auto scene = load_scene(test::source_dir() / "assets/experiments/team/tool.toml");
   ASSERT_TRUE(scene.ok()) << scene.error().message;

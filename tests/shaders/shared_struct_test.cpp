@@ -152,7 +152,6 @@ const std::map<std::string, Offsets>& shared_structs() {
       {"ShadePush", {MEMBER(ShadePush, first_group), MEMBER(ShadePush, first_tile)}},
       {"ShadeTilesPush",
        {MEMBER(ShadeTilesPush, wide), MEMBER(ShadeTilesPush, high),
-        MEMBER(ShadeTilesPush, sea_first), MEMBER(ShadeTilesPush, sea_end),
         MEMBER(ShadeTilesPush, near_m), MEMBER(ShadeTilesPush, sea_off_m),
         MEMBER(ShadeTilesPush, sea_clearest), MEMBER(ShadeTilesPush, ray_corner),
         MEMBER(ShadeTilesPush, ray_dx), MEMBER(ShadeTilesPush, ray_dy)}},

@@ -308,11 +308,9 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::stri
   const scene::Camera camera = scene.cameras[chosen.camera];
   NERITIC_TRY_STATUS(make_device(flags, scene, screen));
   const hud::Units units = flags.units == "imperial" ? hud::Units::kImperial : hud::Units::kMetric;
-  std::optional<WristDisplays> displays;
-  if (physics) displays.emplace(*physics, units);
-  scene::ObjectPictures* const pictures = displays ? &*displays : nullptr;
+  const auto displays = wrist_displays(physics.get(), units);
   NERITIC_TRY(const auto session,
-              Session::create(*screen.device, std::move(scene), picture_places(pictures)));
+              Session::create(*screen.device, std::move(scene), picture_places(displays.get())));
   NERITIC_TRY_STATUS(make_display(flags, camera, screen));
   if (physics) physics->hasten_steps(true);
   std::unique_ptr<Devices> devices;
@@ -425,7 +423,7 @@ Status dive_pictures(const DiveFlags& flags, scene::Scene scene, const std::stri
                                     .own_rates = true,
                                     .consumers = consumers},
              .view = view.get(),
-             .pictures = pictures,
+             .pictures = displays.get(),
              .sources = sources,
              .step_sinks = step_sinks,
              .stop = {.frames = flags.frames,

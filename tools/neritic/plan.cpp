@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <utility>
 #include <vector>
 
 #include "diver/gas_label.hpp"
@@ -44,13 +43,13 @@ Result<bool> write_pictures(const PlanFlags& flags, const char* name, const Plan
   const std::filesystem::path in_folder = flags.out / name;
   NERITIC_TRY(const bool drawn, write_picture(in_folder, data));
   if (flags.plot.empty()) return drawn;
-  for (const auto& [from, to] :
-       {std::pair(picture_data_path(in_folder), picture_data_path(flags.plot)),
-        std::pair(in_folder, flags.plot)}) {
-    if (from == in_folder && !drawn) break;
+  const auto copy = [](const std::filesystem::path& from,
+                       const std::filesystem::path& to) -> Status {
     NERITIC_TRY(const std::vector<std::byte> bytes, read_file(from));
-    NERITIC_TRY_STATUS(write_file(to, bytes));
-  }
+    return write_file(to, bytes);
+  };
+  NERITIC_TRY_STATUS(copy(picture_data_path(in_folder), picture_data_path(flags.plot)));
+  if (drawn) NERITIC_TRY_STATUS(copy(in_folder, flags.plot));
   return drawn;
 }
 

@@ -421,11 +421,9 @@ Result<std::string> render_once(const RenderFlags& asked, RenderedRun& told) {
     NERITIC_TRY(replay, Replay::of(std::move(*recorded), flags.replay, physics->world()));
   }
   if (flags.frames > 1) warn_of_rates(scene, sensors, rate_hz);
-  std::optional<WristDisplays> displays;
-  if (physics) displays.emplace(*physics, hud::Units::kMetric);
-  scene::ObjectPictures* const pictures = displays ? &*displays : nullptr;
+  const auto displays = wrist_displays(physics.get(), hud::Units::kMetric);
   NERITIC_TRY(const auto session,
-              Session::create(*device, std::move(scene), picture_places(pictures)));
+              Session::create(*device, std::move(scene), picture_places(displays.get())));
   log_info("ready to render after {:.0f} ms: {} triangles", to_ms(now_ns() - start),
            session->gpu_scene().triangles());
   session->keep_plan_dump(!flags.dump_graph.empty());
@@ -462,7 +460,7 @@ Result<std::string> render_once(const RenderFlags& asked, RenderedRun& told) {
       {.clock = Clock::simulated(flags.time_s, step_s),
        .physics = physics.get(),
        .sensors = sensors,
-       .pictures = pictures,
+       .pictures = displays.get(),
        .sources = sources,
        .step_sinks = step_sinks,
        .frame_sinks = {&files, &first, &sight},

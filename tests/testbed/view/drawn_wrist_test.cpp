@@ -85,8 +85,9 @@ TEST_F(DrawnWrist, CarriesItsInstrumentInAPictureAheadOfTheNewestState) {
     EXPECT_LT(glm::distance(wrist.position_m, drawn.position_m), 1e-3) << ahead_s;
     // The newest state is elsewhere, so that a panel there would be seen beside the arm.
     const Pose newest = world_from_wrist(human(), swims);
-    if (ahead_s > 0.0)
+    if (ahead_s > 0.0) {
       EXPECT_GT(glm::distance(newest.position_m, drawn.position_m), 0.3 * ahead_s) << ahead_s;
+    }
   }
 }
 
